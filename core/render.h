@@ -1,0 +1,49 @@
+#pragma once
+/// The pass loop, written once: tiles, threads, primary rays, layers, budget, stop and clocks.
+///
+///     Film film(camera.width, camera.height);
+///     RenderReport report = render(scene, *integrator, film, {.passes = 16}, {.seed = 1});
+
+#include <functional>
+
+#include "core/film.h"
+#include "core/integrator.h"
+
+namespace zonal {
+
+/// Ends after `passes`, or when `seconds` of begin_pass plus radiance are spent; 0 = not limited by this.
+struct Budget {
+  int passes = 0;
+  double seconds = 0;
+};
+
+struct RenderOptions {
+  uint64_t seed = 0;
+  int threads = 0;  ///< 0: all
+  /// More than one pass jitters inside the pixel, a single one uses pixel centres. A timed render cannot know how many
+  /// passes it will have and jitters; so does `always_jitter`, with which a single pass of it can be had again.
+  bool always_jitter = false;
+  const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler or another thread
+};
+
+struct RenderReport {
+  int passes = 0;
+  bool interrupted = false;  ///< `stop` was set; the film holds what was finished
+  bool partial = false;      ///< the first and only pass is incomplete: some tiles are black
+  double begin_pass_seconds = 0, radiance_seconds = 0;
+  TileStats counters;
+  PassStats pass;
+};
+
+struct Progress {
+  int pass = 0;
+  double fraction = 0;  ///< of the whole budget
+  double seconds = 0;   ///< spent so far, on_pass and output not counted
+};
+
+/// `on_pass` runs after each finished pass, outside the clock; `on_progress` at most ten times a second.
+RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
+                    const RenderOptions& options, const std::function<void(const Film&)>& on_pass = {},
+                    const std::function<void(const Progress&)>& on_progress = {});
+
+}  // namespace zonal

@@ -1,0 +1,43 @@
+#pragma once
+/// A picture looked up by texture coordinates: bilinear, repeating, decoded to linear values.
+///
+///     Texture albedo = Texture::load("wood.png", Texture::Encoding::srgb);   // colours
+///     Texture bumps  = Texture::load("wood_n.png", Texture::Encoding::linear); // normals, roughness, masks
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace zonal {
+
+class Texture {
+ public:
+  enum class Encoding { srgb, linear };
+
+  /// Reads any format OpenImageIO knows. Throws SceneError naming the file and what is wrong with it. Grey files fill
+  /// r, g and b; a file without alpha has alpha 1. HDR files are linear whatever `encoding` says.
+  static Texture load(const std::string& file, Encoding encoding);
+  /// One-texel or hand-made texture, row-major from the top, linear.
+  Texture(int width, int height, std::vector<vec4> texels);
+
+  /// u right, v UP (OBJ's and Blender's convention; importers flip where a format says otherwise).
+  vec4 sample(vec2 uv) const;
+  vec3 rgb(vec2 uv) const { return vec3(sample(uv)); }
+  /// Nearest alpha, for masks: cheap and without blending across the edge.
+  float alpha(vec2 uv) const;
+  bool has_alpha() const { return has_alpha_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  size_t bytes() const;
+
+ private:
+  Texture() = default;
+  int width_ = 0, height_ = 0;
+  bool has_alpha_ = false, srgb_ = false;
+  std::vector<uint32_t> rgba8_;  ///< 8-bit files stay 8-bit; decoded by table
+  std::vector<vec4> rgba32f_;    ///< everything else
+};
+
+}  // namespace zonal

@@ -1,0 +1,1 @@
+// specular_albedo.cpp

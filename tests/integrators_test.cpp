@@ -1,0 +1,1 @@
+// integrators_test.cpp

@@ -1,0 +1,1 @@
+// lights_test.cpp

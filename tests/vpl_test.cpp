@@ -1,0 +1,1 @@
+// vpl_test.cpp
