@@ -1,0 +1,41 @@
+#pragma once
+/// The subcommands of `zonal`: each adds itself to the command line and, when chosen, parses, calls a
+/// library, prints.
+///
+///     void add_compare(CLI::App& app, int* exit_code) {
+///       auto options = std::make_shared<CompareOptions>();
+///       CLI::App* command = app.add_subcommand("compare", "metrics of one pair of pictures");
+///       command->add_option("image", options->image)->required();
+///       command->callback([=] { *exit_code = compare(*options); });
+///     }
+///
+/// Exit codes: 0 done; 1 a check failed; 2 bad input or usage; 130 interrupted. A callback throws SceneError
+/// for bad input; main.cpp prints it as one line and returns 2.
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace zonal {
+
+inline constexpr int kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 130;
+
+void add_render(CLI::App& app, int* exit_code);
+void add_compare(CLI::App& app, int* exit_code);
+void add_list(CLI::App& app, int* exit_code);
+void add_reference(CLI::App& app, int* exit_code);
+
+/// Set by the first Ctrl-C (or SIGTERM) after `catch_interrupts`; the second ends the program at once.
+std::atomic<bool>& stop_asked();
+void catch_interrupts();
+
+/// `--set key=value` entries laid over `settings`: value is JSON where it parses as such (400, 0.5, true),
+/// else text. Throws SceneError when there is no '='.
+void apply_settings(const std::vector<std::string>& entries, nlohmann::json* settings);
+
+/// "640x360" to width and height, both in 1..32768. Throws SceneError otherwise.
+void parse_size(const std::string& text, int* width, int* height);
+
+}  // namespace zonal
