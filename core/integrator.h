@@ -44,6 +44,7 @@ struct Pass {
   int index = 0;
   uint64_t seed = 0;
   double budget_seconds = 0;  ///< of the whole render; 0 when it counts passes
+  int threads = 1;
 };
 
 /// What a method reports of its preparation; printed in --stats.

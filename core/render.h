@@ -41,6 +41,11 @@ struct Progress {
   double seconds = 0;   ///< spent so far, on_pass and output not counted
 };
 
+/// Traces the primary rays of up to 8x8 pixels from `corner` on (cut off at the picture's edge) and starts their
+/// samplers. `render` does this for every tile; methods may, to measure themselves.
+void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t seed, int pass, bool jitter,
+                Tile* tile, Sampler* samplers);
+
 /// `on_pass` runs after each finished pass, outside the clock; `on_progress` at most ten times a second.
 RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
                     const RenderOptions& options, const std::function<void(const Film&)>& on_pass = {},
