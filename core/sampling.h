@@ -67,14 +67,16 @@ inline uint32_t laine_karras(uint32_t x, uint32_t seed) {
 inline uint32_t owen_scramble(uint32_t x, uint32_t seed) {
   return reverse_bits(laine_karras(reverse_bits(x), seed));
 }
-/// Second dimension of Sobol's sequence: multiplication by Pascal's triangle modulo 2, in five steps, on reversed bits.
+/// Second dimension of Sobol's sequence from the bit-reversed index. Its matrix is Pascal's triangle modulo 2: bit j of
+/// the index reaches output digit i when C(j, i) is odd, which by Lucas means that i's bits are among j's. Summing over
+/// subsets is a butterfly of five steps; on reversed bits each sends the lower half of a block into the upper one.
 inline uint32_t sobol_second(uint32_t reversed) {
   uint32_t x = reversed;
-  x ^= (x & 0xffff0000u) >> 16 ;
-  x ^= (x & 0xff00ff00u) >> 8;
-  x ^= (x & 0xf0f0f0f0u) >> 4;
-  x ^= (x & 0xccccccccu) >> 2;
-  x ^= (x & 0xaaaaaaaau) >> 1;
+  x ^= (x & 0x0000ffffu) << 16;
+  x ^= (x & 0x00ff00ffu) << 8;
+  x ^= (x & 0x0f0f0f0fu) << 4;
+  x ^= (x & 0x33333333u) << 2;
+  x ^= (x & 0x55555555u) << 1;
   return x;
 }
 }  // namespace detail
@@ -106,7 +108,10 @@ vec3 uniform_cone(vec2 u, float one_minus_cos);
 vec2 uniform_triangle(vec2 u);
 inline float power_heuristic(float a, float b) { return a == 0 ? 0 : 1.0f / (1.0f + sqr(b / a)); }
 
-/// Discrete distribution over non-negative weights; all zero makes it uniform.
+/// Discrete distribution over non-negative weights; all zero makes it uniform, and a weight that is not a positive
+/// finite number counts as zero. Probabilities are whole multiples of the spacing of `unit_float`, so `probability` is
+/// exactly the share of u's that `sample` maps to an index, and every positive weight keeps at least one of them: no
+/// light and no texel is lost to rounding, however dim it is beside the others.
 class Discrete {
  public:
   Discrete() = default;
@@ -114,11 +119,12 @@ class Discrete {
   /// Index drawn by u in [0,1); `u_out`, when given, is a fresh uniform number in [0,1).
   uint32_t sample(float u, float* u_out = nullptr) const;
   float probability(uint32_t index) const;
-  uint32_t size() const { return static_cast<uint32_t>(cdf_.size() ? cdf_.size() - 1 : 0); }
+  uint32_t size() const { return static_cast<uint32_t>(first_.size() ? first_.size() - 1 : 0); }
   double total() const { return total_; }  ///< sum of the weights
 
  private:
-  std::vector<float> cdf_;
+  std::vector<uint32_t> first_;  ///< first cell of each index; the cells divide [0,1) evenly
+  uint32_t bits_ = 24;           ///< 2^bits_ cells
   double total_ = 0;
 };
 

@@ -81,6 +81,8 @@ struct SpotLight : Light {
   float inner = 0.3f, outer = 0.5f;  ///< half angles, radians, inner <= outer < pi/2
   /// Share of the axis intensity that leaves at the angle whose cosine is given, [0,1].
   float falloff(float cos_angle) const;
+  /// The same from 1 - cos, for cones so narrow that their cosine is 1 in float.
+  float falloff_versine(float one_minus_cos) const;
   const char* type() const override { return "spot"; }
   vec3 power() const override;
   LightSample sample(vec3 x, vec2 u) const override;
