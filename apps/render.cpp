@@ -89,7 +89,7 @@ int render_command(const Options& options) {
   Film film(scene.camera().width, scene.camera().height);
   ProgressPrinter progress(fmt::format("{} {}", scene.name(), name), options.quiet);
   const RenderReport report = render(scene, *integrator, film, budget, render_options, {},
-                                     [&](const Progress& p) { progress.update(p); });
+                                     [&](const Progress& p) { progress.show(p); });
   progress.finish();
   for (const std::string& warning : report.pass.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (film.bad_samples() > 0)

@@ -46,7 +46,7 @@ struct Transfer {
 };
 
 void transfer(const TilePoints& points, const VirtualLight& light, bool yuksel, float shortest, Transfer* out) {
-  const vec3 p = light.position, n = light.frame.z;
+  const vec3 p = light.position, n = light.normal;
 #pragma omp simd
   for (int k = 0; k < points.count; ++k) {
     const vec3 to_light(p.x - points.x[k], p.y - points.y[k], p.z - points.z[k]);
