@@ -32,6 +32,12 @@ bool fits(double x, const Range& range) {
   return range.contains(x) && (!range.open_low || static_cast<float>(x) > range.low);
 }
 
+std::string listed(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 std::string number_text(double x) {
   return fmt::format("{:g}", x);
 }
@@ -172,13 +178,16 @@ const json* Fields::find(std::string_view key) {
   return it == value_.end() ? nullptr : &*it;
 }
 
-const json& Fields::required(std::string_view key, std::string_view expected) {
+const json& Fields::require(std::string_view key, std::string_view expected) {
   if (const json* found = find(key)) return *found;
-  throw SceneError(fmt::format("{}: found no {}, expected {}", where_, in_quotes(key), expected));
-}
 
-const json& Fields::require(std::string_view key) {
-  return required(key, "one");
+  // A slip of the pen in a required key shows up here, before `finish` could name it.
+  std::vector<std::string> unread;
+  for (const auto& [name, value] : value_.items())
+    if (std::find(asked_.begin(), asked_.end(), name) == asked_.end()) unread.push_back(name);
+  const std::string nearest = nearest_name(key, unread);
+  throw SceneError(fmt::format("{}: found no {}{}, expected {}", where_, in_quotes(key),
+                               nearest.empty() ? "" : " but " + in_quotes(nearest), expected));
 }
 
 void Fields::wrong(std::string_view key, const json& found, const std::string& expected) const {
@@ -186,7 +195,7 @@ void Fields::wrong(std::string_view key, const json& found, const std::string& e
 }
 
 float Fields::number(std::string_view key, Range range) {
-  return read_number(required(key, ranged("a number", range)), at(key), range);
+  return read_number(require(key, ranged("a number", range)), at(key), range);
 }
 
 float Fields::number(std::string_view key, float otherwise, Range range) {
@@ -207,7 +216,7 @@ bool Fields::flag(std::string_view key, bool otherwise) {
 }
 
 std::string Fields::text(std::string_view key) {
-  return read_text(required(key, "a string"), at(key));
+  return read_text(require(key, "a string"), at(key));
 }
 
 std::string Fields::text(std::string_view key, std::string otherwise) {
@@ -224,7 +233,7 @@ vec2 Fields::pair(std::string_view key, vec2 otherwise) {
 }
 
 vec3 Fields::vector(std::string_view key) {
-  return read_vector(required(key, "three numbers [x, y, z]"), at(key));
+  return read_vector(require(key, "three numbers [x, y, z]"), at(key));
 }
 
 vec3 Fields::vector(std::string_view key, vec3 otherwise) {
@@ -237,17 +246,21 @@ vec3 Fields::color(std::string_view key, vec3 otherwise, Range range) {
   return found ? read_color(*found, at(key), range) : otherwise;
 }
 
+int Fields::choice(std::string_view key, std::span<const std::string> names) {
+  require(key, "one of " + listed(names));
+  return choice(key, 0, names);
+}
+
 int Fields::choice(std::string_view key, int otherwise, std::span<const std::string> names) {
   const json* found = find(key);
   if (!found) return otherwise;
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  if (!found->is_string()) wrong(key, *found, "one of " + list);
+  if (!found->is_string()) wrong(key, *found, "one of " + listed(names));
   const std::string& text = found->get_ref<const std::string&>();
   const auto it = std::find(names.begin(), names.end(), text);
   if (it != names.end()) return static_cast<int>(it - names.begin());
   const std::string nearest = nearest_name(text, names);
-  wrong(key, *found, "one of " + list + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
+  wrong(key, *found,
+        "one of " + listed(names) + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
 }
 
 void Fields::finish() const {

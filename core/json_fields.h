@@ -42,8 +42,8 @@ class Fields {
   bool has(std::string_view key) const;
   /// Marks `key` as read and returns its value, or null when absent.
   const nlohmann::json* find(std::string_view key);
-  /// Marks `key` as read; a missing one is a SceneError.
-  const nlohmann::json& require(std::string_view key);
+  /// Marks `key` as read; a missing one is a SceneError that says what is expected there.
+  const nlohmann::json& require(std::string_view key, std::string_view expected = "one");
 
   float number(std::string_view key, Range range = {});  ///< required; finite
   float number(std::string_view key, float otherwise, Range range = {});
@@ -56,7 +56,8 @@ class Fields {
   vec3 vector(std::string_view key, vec3 otherwise);
   /// A colour: three numbers, one number (grey), or "#rrggbb" (sRGB). Components must lie in `range`.
   vec3 color(std::string_view key, vec3 otherwise, Range range = {0, 1e300});
-  /// One of `names`, as its index.
+  /// One of `names`, as its index; required.
+  int choice(std::string_view key, std::span<const std::string> names);
   int choice(std::string_view key, int otherwise, std::span<const std::string> names);
 
   /// Throws SceneError naming the first key nobody asked for and the nearest one that was.
@@ -72,7 +73,6 @@ class Fields {
   std::string where_;
   std::vector<std::string> asked_;
 
-  const nlohmann::json& required(std::string_view key, std::string_view expected);
   [[noreturn]] void wrong(std::string_view key, const nlohmann::json& found,
                           const std::string& expected) const;
 };

@@ -27,14 +27,15 @@ struct ImportOptions {
   float metres_per_unit = 1;
   mat4 transform{1};                 ///< applied after metres_per_unit
   std::vector<std::string> exclude;  ///< object, group, node or mesh names to leave out; '*' at the end matches any tail
-  /// Materials of these names will be replaced by the scene's: their textures need not be read.
+  /// Materials of these names will be replaced by the scene's: their textures need not be read. '*' means all of them.
+  /// Names the file does not have are ignored: the scene loader passes all it knows.
   std::vector<std::string> overridden_materials;
   bool lights = true;   ///< import punctual lights
   bool smooth_normals = true;  ///< make up vertex normals where the file has none
 };
 
 /// Textures are decoded in parallel. Throws SceneError: missing file, what the importer says of a broken one, missing
-/// texture, indices out of range, NaN vertices, an `exclude` or override name that matches nothing.
+/// texture, indices out of range, NaN vertices, an `exclude` name that matches nothing.
 ImportedFile import_mesh(const std::string& file, const ImportOptions& options);
 
 }  // namespace zonal
