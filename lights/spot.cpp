@@ -53,7 +53,11 @@ float sample_edge(float u) {
 }  // namespace
 
 float SpotLight::falloff(float cos_angle) const {
-  return Cone(*this).falloff(1.0f - cos_angle);
+  return falloff_versine(1.0f - cos_angle);
+}
+
+float SpotLight::falloff_versine(float one_minus_cos) const {
+  return Cone(*this).falloff(one_minus_cos);
 }
 
 vec3 SpotLight::power() const {
