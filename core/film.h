@@ -12,16 +12,19 @@ class Film {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// One estimate of a pixel and, for the layers, what its primary ray met. Not-finite or negative radiance is counted
-  /// and replaced by 0, so that one bad number cannot spoil a picture; `bad_samples` makes it visible.
-  void begin_pass();  ///< estimates added now are kept apart until `commit_pass`
+  /// Estimates added from now on are kept apart until `commit_pass`.
+  void begin_pass();
+  /// One estimate of a pixel and, for the layers, what its primary ray met. Threads may add distinct pixels at once.
+  /// A second estimate of the same pixel in the same pass replaces the first.
   void add(int x, int y, vec3 radiance, vec3 albedo, vec3 normal, float depth);
+  /// Takes the pass into the means. Not-finite or negative radiance is counted and replaced by 0 (so is a not-finite
+  /// layer), so that one bad number cannot spoil a picture; `bad_samples` makes it visible.
   void commit_pass();
   /// Forgets what the uncommitted pass added.
   void discard_pass();
 
   int passes() const { return passes_; }
-  size_t bad_samples() const { return bad_samples_; }
+  size_t bad_samples() const { return bad_samples_; }  ///< pixels, summed over the committed passes
   /// Mean radiance of the committed passes (W m^-2 sr^-1).
   Image radiance() const;
   /// Variance of that mean, per channel, from the scatter of the passes; 0 with fewer than two.
