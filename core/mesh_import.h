@@ -26,7 +26,7 @@ struct ImportedFile {
 struct ImportOptions {
   float metres_per_unit = 1;
   mat4 transform{1};                 ///< applied after metres_per_unit
-  std::vector<std::string> exclude;  ///< object, group, node or mesh names to leave out; '*' at the end matches any tail
+  std::vector<std::string> exclude;  ///< object, group, node, mesh or material names to leave out; '*' at the end matches any tail
   /// Materials of these names will be replaced by the scene's: their textures need not be read. '*' means all of them.
   /// Names the file does not have are ignored: the scene loader passes all it knows.
   std::vector<std::string> overridden_materials;

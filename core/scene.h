@@ -31,7 +31,7 @@ struct Camera {
 struct Hit {
   float t = kInfinity;  ///< metres along the ray
   uint32_t shape = kNone, primitive = kNone;
-  float u = 0, v = 0;  ///< barycentrics of the triangle's second and third vertex; unused for spheres
+  float u = 0, v = 0;  ///< barycentrics of the triangle's second and third vertex; a sphere's normal, octahedral
   bool found() const { return shape != kNone; }
 };
 
@@ -42,7 +42,8 @@ struct Surface {
   Frame shading;         ///< shading frame after normal mapping, on the same side
   vec3 w_out{0, 0, 1};   ///< unit, towards where the ray came from, world
   vec2 uv{0};
-  uint32_t shape = kNone, primitive = kNone, material = kNone;
+  float error = 0;  ///< metres: how far rounding may put the point, or the next hit of its triangle, off the surface
+  uint32_t shape = kNone, primitive = kNone, material = kNone;  ///< primitive: as the loader numbered it
   uint32_t light = kNone;  ///< index into Scene::lights() when the surface glows
   bool front = true;       ///< the ray met the side the winding (counter-clockwise) or the sphere's outside shows
 
@@ -124,7 +125,8 @@ class Scene {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A ray origin moved off the surface towards `w`, far enough that the surface is not met again in float.
+/// A ray origin moved off the surface towards `w`, far enough that the surface is not met again in float. The second
+/// form guesses the triangle's size from the position: prefer the first where there is a Surface.
 vec3 offset_origin(const Surface& s, vec3 w);
 vec3 offset_origin(vec3 position, vec3 normal, vec3 w);
 

@@ -4,7 +4,9 @@
 ///     Texture albedo = Texture::load("wood.png", Texture::Encoding::srgb);   // colours
 ///     Texture bumps  = Texture::load("wood_n.png", Texture::Encoding::linear); // normals, roughness, masks
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,8 @@ class Texture {
   /// Reads any format OpenImageIO knows. Throws SceneError naming the file and what is wrong with it. Grey files fill
   /// r, g and b; a file without alpha has alpha 1. HDR files are linear whatever `encoding` says.
   static Texture load(const std::string& file, Encoding encoding);
+  /// The same from a picture file already in memory (embedded in a GLB, say); `name` is for errors.
+  static Texture decode(std::span<const std::byte> bytes, const std::string& name, Encoding encoding);
   /// One-texel or hand-made texture, row-major from the top, linear.
   Texture(int width, int height, std::vector<vec4> texels);
 
@@ -27,13 +31,20 @@ class Texture {
   vec3 rgb(vec2 uv) const { return vec3(sample(uv)); }
   /// Nearest alpha, for masks: cheap and without blending across the edge.
   float alpha(vec2 uv) const;
-  bool has_alpha() const { return has_alpha_; }
+  bool has_alpha() const { return has_alpha_; }  ///< some texel's alpha is below 1
   int width() const { return width_; }
   int height() const { return height_; }
   size_t bytes() const;
+  /// Average of the decoded texels.
+  vec4 mean() const;
 
  private:
   Texture() = default;
+  vec4 texel(int x, int y) const;
+  void fill8(std::span<const uint8_t> pixels, int channels);
+  void fill_float(std::span<const float> pixels, int channels, bool decode_srgb);
+  void find_alpha();
+  friend struct TextureReader;
   int width_ = 0, height_ = 0;
   bool has_alpha_ = false, srgb_ = false;
   std::vector<uint32_t> rgba8_;  ///< 8-bit files stay 8-bit; decoded by table
