@@ -18,8 +18,8 @@ namespace zonal {
 namespace {
 
 struct Options {
-  std::string scene, integrator, size, output, stats, backend = "cpu";
-  std::vector<std::string> settings;
+  std::string scene, integrator, size, stats, backend = "cpu";
+  std::vector<std::string> outputs, settings;
   int passes = 0, threads = 0, frame = 0;
   double seconds = 0;
   uint64_t seed = 0;
@@ -64,9 +64,9 @@ int render_command(const Options& options) {
   if (options.passes > 0 && options.seconds > 0) throw SceneError("--passes and --time: expected only one of them");
   LoadOptions load{.frame = options.frame};
   if (!options.size.empty()) parse_size(options.size, &load.width, &load.height);
-  const std::string output =
-      options.output.empty() ? std::filesystem::path(options.scene).stem().string() + ".exr" : options.output;
-  check_writable(output);
+  std::vector<std::string> outputs = options.outputs;
+  if (outputs.empty()) outputs = {std::filesystem::path(options.scene).stem().string() + ".exr"};
+  for (const std::string& file : outputs) check_writable(file);
   if (!options.stats.empty()) check_writable_text(options.stats);
 
   const auto load_start = Clock::now();
@@ -89,7 +89,7 @@ int render_command(const Options& options) {
   Film film(scene.camera().width, scene.camera().height);
   ProgressPrinter progress(fmt::format("{} {}", scene.name(), name), options.quiet);
   const RenderReport report = render(scene, *integrator, film, budget, render_options, {},
-                                     [&](const Progress& p) { progress.show(p); });
+                                     [&](const Progress& p) { progress.update(p); });
   progress.finish();
   for (const std::string& warning : report.pass.warnings) fmt::print(stderr, "warning: {}\n", warning);
   if (film.bad_samples() > 0)
@@ -114,7 +114,8 @@ int render_command(const Options& options) {
   for (const char* key : {"parameters", "seed", "frame", "passes", "seconds"}) picture.metadata[key] = stats[key].dump();
   picture.metadata["exposure"] = fmt::format("{:.9g}", scene.camera().exposure);
   const auto output_start = Clock::now();
-  write_image(output, picture, scene.camera().exposure);
+  for (const std::string& file : outputs) write_image(file, picture, scene.camera().exposure);
+  const std::string output = fmt::format("{}", fmt::join(outputs, ", "));
   stats["seconds"]["output"] = seconds_since(output_start);
   stats["peak_memory_bytes"] = peak_memory_bytes();
   if (!options.stats.empty()) write_text(options.stats, stats.dump(2) + "\n");
@@ -153,7 +154,8 @@ void add_render(CLI::App& app, int* exit_code) {
   command->add_option("--seed", options->seed, "random seed");
   command->add_option("--frame", options->frame, "frame of a scene with keyframes");
   command->add_option("--backend", options->backend, "cpu");
-  command->add_option("-o,--output", options->output, "picture to write (.exr or .png)");
+  command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again")
+      ->allow_extra_args(false);
   command->add_option("--stats", options->stats, "JSON file for settings, times and counters");
   command->add_flag("--jitter", options->jitter, "jitter inside pixels even with a single pass");
   command->add_flag("--quiet", options->quiet, "print errors and warnings only");
