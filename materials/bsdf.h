@@ -6,9 +6,11 @@
 ///     vec3 f = evaluate(bsdf, view, w_in);                    // 1/sr, without the cosine
 ///
 /// All directions are unit vectors in the shading frame (z = normal), pointing away from the surface. Surfaces reflect
-/// only: f = 0 when either direction has z <= 0. All models are reciprocal and reflect at most what they receive.
+/// only: f = 0 when either direction has z <= 1e-8. All models are reciprocal and reflect at most what they receive.
+/// docs/materials.md has the equations.
 
 #include "core/vec.h"
+#include "materials/specular_albedo.h"
 
 namespace zonal {
 
@@ -25,8 +27,9 @@ struct Bsdf {
   vec3 diffuse{0};      ///< albedo of the diffuse part, [0,1]
   vec3 specular{0};     ///< blinn_phong: ks; metallic_roughness: F0; conductor, coated: tint (1 = physical)
   vec3 eta{1}, k{0};    ///< conductor: complex index of refraction, per channel. coated: eta.x = index of the coat
-  float alpha_x = 1, alpha_y = 1;  ///< GGX widths, along the frame's x and y
+  float alpha_x = 1, alpha_y = 1;  ///< GGX widths, >= 1e-4, along the frame's x and y
   float exponent = 1;   ///< Blinn-Phong
+  const SpecularAlbedo* coat = nullptr;  ///< coated, metallic_roughness: what the coat keeps from the diffuse base
 };
 
 /// What an evaluation can reuse while w_out stays the same.
@@ -34,6 +37,9 @@ struct BsdfContext {
   vec3 w_out{0, 0, 1};
   float specular_albedo_out = 0;  ///< coated, metallic_roughness: directional albedo of the coat seen from w_out
   float specular_share = 0;       ///< probability that sampling takes the specular lobe
+  float stretch_out = 1;          ///< GGX: |(alpha_x x, alpha_y y, z)| of w_out
+  float normalization = 0;        ///< blinn_phong: the lobe's; coated, metallic_roughness: (1-E(o)) / (pi (1-E_avg))
+  SpecularAlbedo::Row coat;       ///< coated, metallic_roughness: E at this roughness
 };
 
 struct BsdfSample {

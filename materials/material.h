@@ -47,7 +47,8 @@ struct LambertMaterial : Material {
   const char* type() const override { return "lambert"; }
 };
 
-/// Normalised Blinn-Phong (Giesen's normalisation): diffuse + specular lobe of cos^exponent(half angle).
+/// Normalised Blinn-Phong (Giesen's normalisation): diffuse + specular lobe of cos^exponent(half angle). Where diffuse +
+/// specular exceeds 1 in a channel, both are divided by the sum.
 struct BlinnPhongMaterial : Material {
   TexturedColor diffuse{vec3(0.5f)}, specular{vec3(0.04f)};
   float exponent = 50;
@@ -55,7 +56,9 @@ struct BlinnPhongMaterial : Material {
   const char* type() const override { return "blinn_phong"; }
 };
 
-/// GGX with exact conductor Fresnel. roughness is glTF's: alpha = roughness^2; anisotropy in [-1,1] stretches along x.
+/// GGX with exact conductor Fresnel. roughness is glTF's: alpha = roughness^2, at least 1e-4. anisotropy in [-1,1]
+/// stretches highlights along x (negative: along y): alpha_y / alpha_x = 1 - 0.9 anisotropy (Burley 2012), the product
+/// of the two staying alpha^2.
 struct ConductorMaterial : Material {
   vec3 eta{0.2f, 0.92f, 1.1f}, k{3.9f, 2.45f, 2.14f};
   TexturedColor tint{vec3(1)};
@@ -70,8 +73,9 @@ struct ConductorMaterial : Material {
 struct CoatedMaterial : Material {
   TexturedColor albedo{vec3(0.5f)};
   TexturedNumber roughness{0.3f};
-  float ior = 1.5f;
+  float ior = 1.5f;  ///< of the coat, >= 1
   float anisotropy = 0;
+  CoatTable table;  ///< of (ior, anisotropy); made by the first call of `at`
   Bsdf at(vec2 uv) const override;
   const char* type() const override { return "coated"; }
 };
@@ -84,7 +88,7 @@ struct MetallicRoughnessMaterial : Material {
   const char* type() const override { return "metallic_roughness"; }
 };
 
-/// Complex index of refraction of a named metal ("gold", "aluminium", ...) at Rec. 709's primaries.
+/// Complex index of refraction of a named metal ("gold", "aluminium", ...) in red, green and blue: 630, 550, 465 nm.
 struct Metal {
   std::string name;
   vec3 eta, k;
