@@ -114,8 +114,7 @@ BsdfContext prepare(const Bsdf& b, vec3 w_out) {
       const float below = 1.0f - view.coat.average();
       view.specular_albedo_out = E;
       view.normalization = below > 1e-6f ? (1.0f - E) / (kPi * below) : 0.0f;
-      // Lobes are sampled in proportion to what they reflect. Schlick's F is linear in F0, and E(F0 = 1) is
-      // nearly 1.
+      // Lobes are sampled in proportion to what they reflect. A black F0 still shines at grazing angles.
       const float specular = b.kind == BsdfKind::coated
                                  ? luminance(b.specular) * E
                                  : schlick_albedo(std::fmax(luminance(b.specular), 0.01f), E);
