@@ -11,9 +11,9 @@ LightSample PointLight::sample(vec3 x, vec2) const {
   LightSample s;
   const vec3 to_light = position - x;
   const float distance2 = glm::dot(to_light, to_light);
-  // On the light itself there is no direction, and no finite irradiance.
+  // On the light itself there is no direction, and no finite irradiance; too far away, none is left.
   const vec3 irradiance = intensity / distance2;
-  if (!(distance2 > 0) || !is_finite(irradiance)) return s;
+  if (!(distance2 > 0) || is_black(irradiance) || !is_finite(irradiance)) return s;
   s.distance = std::sqrt(distance2);
   s.w_in = to_light / s.distance;
   s.radiance = irradiance;

@@ -87,7 +87,7 @@ float SphereLight::importance(vec3 x) const {
   const float d2 = glm::dot(to_center, to_center);
   // The same test as in `sample`: dark exactly where that finds nothing.
   if (std::sqrt(d2) <= radius) return two_sided ? kPi * luminance(emission) : 0.0f;
-  return kPi * luminance(emission) * std::fmin(1.0f, sqr(radius) / d2);
+  return kPi * luminance(emission) * std::fmin(1.0f, sqr(radius / std::sqrt(d2)));
 }
 
 }  // namespace zonal
