@@ -58,7 +58,7 @@ std::string check_mesh(const MeshData& mesh) {
   return {};
 }
 
-Packed pack_mesh(const MeshData& mesh, std::vector<Vertex>& vertices, std::vector<uvec3>& triangles,
+Packed pack_mesh(const MeshData& mesh, Vertices& vertices, Triangles& triangles,
                  std::vector<uint32_t>& original) {
   Packed result{check_mesh(mesh), 0};
   if (!result.error.empty()) return result;

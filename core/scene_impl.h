@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/embree.h"
+#include "core/huge_pages.h"
 #include "core/scene.h"
 
 namespace zonal {
@@ -15,6 +16,9 @@ struct alignas(32) Vertex {
   vec3 normal{0};  ///< zero: use the triangle's
   vec2 uv{0};
 };
+
+using Vertices = std::vector<Vertex, HugePages<Vertex>>;
+using Triangles = std::vector<uvec3, HugePages<uvec3>>;
 
 /// One shape, flat: no virtual calls and few indirections between a hit and its surface.
 struct Shape {
@@ -49,8 +53,8 @@ struct Scene::Impl {
   std::string name;
   Camera camera;
   std::vector<Shape> shapes;
-  std::vector<std::vector<Vertex>> vertices;    ///< by shape
-  std::vector<std::vector<uvec3>> triangles;    ///< by shape
+  std::vector<Vertices> vertices;               ///< by shape
+  std::vector<Triangles> triangles;             ///< by shape
   std::vector<std::vector<uint32_t>> original;  ///< by shape; mostly empty
   std::vector<std::unique_ptr<Texture>> textures;
   std::vector<std::unique_ptr<Material>> materials;

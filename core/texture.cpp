@@ -125,18 +125,23 @@ Texture Texture::decode(std::span<const std::byte> bytes, const std::string& nam
 }
 
 Texture::Texture(int width, int height, std::vector<vec4> texels)
-    : width_(width), height_(height), rgba32f_(std::move(texels)) {
+    : width_(width), height_(height), rgba32f_(texels.begin(), texels.end()) {
   assert(width > 0 && height > 0 && rgba32f_.size() == size_t(width) * height);
   find_alpha();
 }
 
-void Texture::fill8(std::span<const uint8_t> p, int channels) {
+void Texture::fill8(std::span<const uint8_t> pixels, int channels) {
   const bool grey = channels < 3, alpha = channels == 2 || channels == 4;
-  rgba8_.resize(p.size() / channels);
-  for (size_t i = 0, k = 0; i < rgba8_.size(); ++i, k += channels) {
-    const uint32_t r = p[k], g = grey ? r : p[k + 1], b = grey ? r : p[k + 2];
-    const uint32_t a = alpha ? p[k + channels - 1] : 255;
-    rgba8_[i] = r | g << 8 | b << 16 | a << 24;
+  squares_ = size_t(width_ + 3) / 4;
+  // What pads the last squares is never looked up; opaque, so that it does not count as alpha either.
+  rgba8_.assign(squares_ * (size_t(height_ + 3) / 4) * 16, 0xffffffffu);
+  const uint8_t* p = pixels.data();
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x, p += channels) {
+      const uint32_t r = p[0], g = grey ? r : p[1], b = grey ? r : p[2];
+      const uint32_t a = alpha ? p[channels - 1] : 255;
+      rgba8_[place(x, y)] = r | g << 8 | b << 16 | a << 24;
+    }
   }
 }
 
@@ -156,9 +161,8 @@ void Texture::find_alpha() {
 }
 
 vec4 Texture::texel(int x, int y) const {
-  const size_t i = size_t(y) * width_ + x;
-  if (rgba8_.empty()) return rgba32f_[i];
-  const uint32_t t = rgba8_[i];
+  if (rgba8_.empty()) return rgba32f_[size_t(y) * width_ + x];
+  const uint32_t t = rgba8_[place(x, y)];
   const float* rgb = kBytes.value.data() + (srgb_ ? 256 : 0);
   return {rgb[t & 255], rgb[(t >> 8) & 255], rgb[(t >> 16) & 255], kBytes.value[t >> 24]};
 }
@@ -181,8 +185,7 @@ vec4 Texture::sample(vec2 uv) const {
 float Texture::alpha(vec2 uv) const {
   const int x = std::min(int(repeat(uv.x) * width_), width_ - 1);
   const int y = std::min(int((1 - repeat(uv.y)) * height_), height_ - 1);
-  const size_t i = size_t(y) * width_ + x;
-  return rgba8_.empty() ? rgba32f_[i].w : kBytes.value[rgba8_[i] >> 24];
+  return rgba8_.empty() ? rgba32f_[size_t(y) * width_ + x].w : kBytes.value[rgba8_[place(x, y)] >> 24];
 }
 
 size_t Texture::bytes() const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "core/vec.h"
 
 namespace zonal {
@@ -41,14 +42,17 @@ class Texture {
  private:
   Texture() = default;
   vec4 texel(int x, int y) const;
+  /// Where rgba8_ keeps a texel: a square is one cache line, so that four neighbours touch 1.6 lines rather than 2.1.
+  size_t place(int x, int y) const { return (size_t(y >> 2) * squares_ + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3); }
   void fill8(std::span<const uint8_t> pixels, int channels);
   void fill_float(std::span<const float> pixels, int channels, bool decode_srgb);
   void find_alpha();
   friend struct TextureReader;
   int width_ = 0, height_ = 0;
   bool has_alpha_ = false, srgb_ = false;
-  std::vector<uint32_t> rgba8_;  ///< 8-bit files stay 8-bit; decoded by table
-  std::vector<vec4> rgba32f_;    ///< everything else
+  std::vector<uint32_t, HugePages<uint32_t>> rgba8_;  ///< 8-bit files stay 8-bit, in squares of 4 x 4; decoded by table
+  size_t squares_ = 0;           ///< in a row of squares
+  std::vector<vec4, HugePages<vec4>> rgba32f_;    ///< everything else
 };
 
 }  // namespace zonal
