@@ -23,8 +23,12 @@ struct EnvironmentLight::Impl {
   float largest_irradiance = 0;     ///< bound of the luminance of the irradiance of any surface
   BoundingSphere bounds;
 
-  int row_of(double y) const { return std::clamp(static_cast<int>(y * height), 0, height - 1); }
-  int column_of(double x) const { return std::clamp(static_cast<int>(x * width), 0, width - 1); }
+  int row_of(float y) const {
+    return std::clamp(static_cast<int>(y * static_cast<float>(height)), 0, height - 1);
+  }
+  int column_of(float x) const {
+    return std::clamp(static_cast<int>(x * static_cast<float>(width)), 0, width - 1);
+  }
   const vec3& texel(int row, int column) const {
     return texels[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)];
   }
@@ -33,11 +37,9 @@ struct EnvironmentLight::Impl {
   /// Square coordinates of a direction (ENV-1). They are linear in angle, unlike those of `distribution`
   /// inside a row, but share its rows and columns.
   void locate(vec3 w, int* row, int* column) const {
-    const double across = std::hypot(static_cast<double>(w.x), static_cast<double>(w.z));
-    const double theta = std::atan2(across, static_cast<double>(w.y));
-    const double turns =
-        0.5 + (std::atan2(static_cast<double>(w.x), -static_cast<double>(w.z)) + rotation) / (2 * M_PI);
-    *row = row_of(theta / M_PI);
+    const float theta = std::atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y);
+    const float turns = 0.5f + (std::atan2(w.x, -w.z) + rotation) * (0.5f * kInvPi);
+    *row = row_of(theta * kInvPi);
     *column = column_of(turns - std::floor(turns));
   }
 
@@ -51,12 +53,13 @@ struct EnvironmentLight::Impl {
   vec3 sample(vec2 u, int* row, int* column, float* pdf) const {
     const vec2 p = distribution.sample(u, nullptr);
     *row = row_of(p.y), *column = column_of(p.x);
+    // Near a pole the cosine alone holds the direction: in double, so that the thinnest band keeps its shape.
     const double inside = static_cast<double>(p.y) * height - *row;
     const double cosine = edge_cosine[*row] - inside * band(*row);
-    const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
-    const double azimuth = 2 * M_PI * (p.x - 0.5) - rotation;
+    const auto sine = static_cast<float>(std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine))));
+    const float azimuth = 2 * kPi * (p.x - 0.5f) - rotation;
     *pdf = density(*row, *column);
-    return vec3(glm::dvec3(sine * std::sin(azimuth), cosine, -sine * std::cos(azimuth)));
+    return {sine * std::sin(azimuth), static_cast<float>(cosine), -sine * std::cos(azimuth)};
   }
 };
 

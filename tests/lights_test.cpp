@@ -285,8 +285,9 @@ TEST(environment_light, sample_and_pdf_agree) {
     ASSERT_NEAR(glm::length(s.w_in), 1, 1e-6);
     if (sky.pdf({}, {{}, s.w_in, {}, 0}) != s.pdf || sky.radiance({}, -s.w_in) != s.radiance) ++differing;
   }
-  // A direction rounded across a texel's edge sees the neighbour: some 32 edges, 1e-7 wide, of a turn.
-  EXPECT_LE(differing, 1);
+  // A direction rounded across a texel's edge sees the neighbour: 48 edges, some 2e-7 of the way around
+  // wide, 20000 times: 0.2 on average, and 5 or more once in 400000.
+  EXPECT_LE(differing, 4);
   EXPECT_TRUE(std::isfinite(sky.pdf({}, {{}, {0, 1, 0}, {}, 0})));
   EXPECT_TRUE(std::isfinite(sky.pdf({}, {{}, {0, -1, 0}, {}, 0})));
 }
