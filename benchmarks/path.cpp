@@ -40,6 +40,14 @@ std::vector<RayRecord> record(const Scene& scene) {
   return rays;
 }
 
+RTCRayHit to_embree(const RayRecord& r) {
+  RTCRayHit query;
+  query.ray = {r.origin.x, r.origin.y, r.origin.z, r.t_min, r.direction.x, r.direction.y, r.direction.z,
+               0,          r.t_max,    ~0u,        0,       0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  return query;
+}
+
 /// Seconds Embree takes for the rays, in order, chunk by chunk.
 double trace_raw(const Scene& scene, const std::vector<RayRecord>& rays, int threads) {
   const auto raw = static_cast<RTCScene>(scene.embree());
@@ -49,13 +57,14 @@ double trace_raw(const Scene& scene, const std::vector<RayRecord>& rays, int thr
   const auto start = Clock::now();
   arena.execute([&] {
     oneapi::tbb::parallel_for(size_t{0}, (rays.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
+      embree::Context context = embree::context();
       const size_t end = std::min(rays.size(), (chunk + 1) * kChunk);
       for (size_t i = chunk * kChunk; i < end; ++i) {
-        const RayRecord& r = rays[i];
-        if (r.shadow) {
-          embree::occluded(raw, r.origin, r.direction, r.t_min, r.t_max);
+        RTCRayHit query = to_embree(rays[i]);
+        if (rays[i].shadow) {
+          embree::occluded1(raw, context, query.ray);
         } else {
-          embree::intersect(raw, r.origin, r.direction, r.t_min, r.t_max);
+          embree::intersect1(raw, context, query);
         }
       }
     });

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/ray_recorder.h"
 #include "core/scene_impl.h"
 
 namespace zonal {
+
+constinit thread_local std::vector<RayRecord>* ray_recorder = nullptr;
 
 namespace {
 
@@ -96,6 +99,7 @@ vec3 Scene::emitted(const Surface& s) const {
 
 Hit Scene::intersect(vec3 origin, vec3 direction, float t_min, float t_max) const {
   RTCRayHit query;
+  if (ray_recorder) [[unlikely]] ray_recorder->push_back({origin, t_min, direction, t_max, false});
   fill(query.ray, origin, direction, t_min, t_max);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   embree::Context context = embree::context();
@@ -106,6 +110,7 @@ Hit Scene::intersect(vec3 origin, vec3 direction, float t_min, float t_max) cons
 
 bool Scene::occluded(vec3 origin, vec3 direction, float t_min, float t_max) const {
   RTCRay ray;
+  if (ray_recorder) [[unlikely]] ray_recorder->push_back({origin, t_min, direction, t_max, true});
   fill(ray, origin, direction, t_min, t_max);
   embree::Context context = embree::context();
   embree::occluded1(impl_->scene, context, ray);

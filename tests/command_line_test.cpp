@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Run {
+struct Outcome {
   int exit_code = -1;
   std::string out;  ///< stdout and stderr
 };
 
-Run zonal(const std::string& arguments) {
+Outcome zonal(const std::string& arguments) {
   FILE* pipe = popen((std::string(ZONAL_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
-  Run run;
+  Outcome run;
   std::array<char, 4096> buffer;
   while (size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) run.out.append(buffer.data(), n);
   const int status = pclose(pipe);
@@ -48,7 +48,7 @@ class CommandLine : public testing::Test {
   std::string render(const std::string& rest) const { return "render " + scene.string() + " --quiet " + rest; }
 
   void expect_refused(const std::string& arguments, const std::vector<std::string>& words) const {
-    const Run run = zonal(arguments);
+    const Outcome run = zonal(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments << "\n" << run.out;
     EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1) << "one line expected:\n" << run.out;
     for (const std::string& word : words) EXPECT_NE(run.out.find(word), std::string::npos) << word << " missing in: " << run.out;
@@ -58,7 +58,7 @@ class CommandLine : public testing::Test {
 };
 
 TEST_F(CommandLine, renders_an_exr_with_layers_and_stats) {
-  const Run run = zonal(render("--passes 2 --seed 9 -o " + path("a.exr") + " --stats " + path("a.json")));
+  const Outcome run = zonal(render("--passes 2 --seed 9 -o " + path("a.exr") + " --stats " + path("a.json")));
   ASSERT_EQ(run.exit_code, 0) << run.out;
   const ImageFile image = read_image(path("a.exr"));
   for (const char* layer : {"", "albedo", "normal", "depth"}) EXPECT_TRUE(image.layers.count(layer)) << layer;
@@ -77,7 +77,7 @@ TEST_F(CommandLine, a_timed_render_can_be_had_again_with_its_number_of_passes) {
     ASSERT_EQ(zonal(render("--integrator " + method + " --time 0.3 -o " + path("t.exr") + " --stats " + path("t.json"))).exit_code, 0);
     const auto stats = nlohmann::json::parse(std::ifstream(path("t.json")));
     const std::string repeat = stats["repeat"];
-    const Run again = zonal(render("--integrator " + method + " --threads 1 -o " + path("u.exr") + " " + repeat));
+    const Outcome again = zonal(render("--integrator " + method + " --threads 1 -o " + path("u.exr") + " " + repeat));
     ASSERT_EQ(again.exit_code, 0) << again.out;
     EXPECT_EQ(read_image(path("t.exr")).layers.at("").pixels, read_image(path("u.exr")).layers.at("").pixels) << repeat;
   }
@@ -121,7 +121,7 @@ TEST_F(CommandLine, refuses_with_one_line_and_writes_nothing) {
 
 TEST_F(CommandLine, compares_a_picture_with_itself) {
   ASSERT_EQ(zonal(render("--passes 1 -o " + path("a.exr"))).exit_code, 0);
-  const Run run = zonal("compare " + path("a.exr") + " " + path("a.exr") + " --json");
+  const Outcome run = zonal("compare " + path("a.exr") + " " + path("a.exr") + " --json");
   ASSERT_EQ(run.exit_code, 0) << run.out;
   const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["linear"]["rmse"], 0);
@@ -131,7 +131,7 @@ TEST_F(CommandLine, compares_a_picture_with_itself) {
 }
 
 TEST_F(CommandLine, lists_every_parameter_as_json) {
-  const Run run = zonal("list integrators --json");
+  const Outcome run = zonal("list integrators --json");
   ASSERT_EQ(run.exit_code, 0) << run.out;
   EXPECT_NE(run.out.find("max_bounces"), std::string::npos);
   EXPECT_TRUE(nlohmann::json::accept(run.out));
