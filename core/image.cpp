@@ -156,14 +156,15 @@ Encoded encode_png(const Image& radiance, float exposure, bool display_referred)
 
 }  // namespace
 
-float srgb_encode(float linear) {  // IEC 61966-2-1
-  const float x = std::fmin(std::fmax(linear, 0.0f), 1.0f);
-  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+// IEC 61966-2-1. In double, so that white stays 1 exactly.
+float srgb_encode(float linear) {
+  const double x = std::fmin(std::fmax(linear, 0.0f), 1.0f);
+  return static_cast<float>(x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
 }
 
 float srgb_decode(float encoded) {
-  const float x = std::fmin(std::fmax(encoded, 0.0f), 1.0f);
-  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+  const double x = std::fmin(std::fmax(encoded, 0.0f), 1.0f);
+  return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
 }
 
 ImageFile read_image(const std::string& file) {
@@ -236,7 +237,9 @@ void check_writable(const std::string& file) {
   check_can_write(file);
 }
 
-void check_writable_text(const std::string& file) { check_can_write(file); }
+void check_writable_text(const std::string& file) {
+  check_can_write(file);
+}
 
 void write_text(const std::string& file, const std::string& text) {
   write_atomically(file, text.data(), text.size());
