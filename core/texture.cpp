@@ -8,6 +8,8 @@
 #include <array>
 #include <cassert>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/image.h"
@@ -39,16 +41,37 @@ float repeat(float x) {
   return x >= 0 && x < 1 ? x : 0.0f;
 }
 
+/// libpng prints to stderr when a picture ends early, so that is found out first: the chunks must lead to
+/// IEND.
+void refuse_cut_png(std::istream& in, const std::string& name) {
+  unsigned char head[8] = {};
+  in.read(reinterpret_cast<char*>(head), 8);
+  if (!in || std::string_view(reinterpret_cast<char*>(head), 4) != "\x89PNG") return;
+  // A chunk: length (4 bytes, big-endian), type (4), data, checksum (4).
+  while (in.read(reinterpret_cast<char*>(head), 8)) {
+    if (std::string_view(reinterpret_cast<char*>(head) + 4, 4) == "IEND") return;
+    const uint32_t length = uint32_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+    in.seekg(std::streamoff(length) + 4, std::ios::cur);
+  }
+  throw SceneError(name + ": cannot be read as a picture: the PNG file is cut short");
+}
+
 }  // namespace
 
 /// Fills a Texture from an opened picture.
 struct TextureReader {
   static Texture read(std::unique_ptr<OIIO::ImageInput> input, const std::string& name,
                       Texture::Encoding encoding);
-  static OIIO::ImageSpec options() {
+  /// `name` is for errors, `file` tells the format; read from `memory` unless it is null.
+  static Texture open(const std::string& file, const std::string& name, OIIO::Filesystem::IOProxy* memory,
+                      Texture::Encoding encoding) {
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;  // the colour beside a cut-away texel is kept, not blackened
-    return config;
+    if (memory) config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
+    auto input = OIIO::ImageInput::open(file, &config);
+    const std::string error = OIIO::geterror();  // fetched in any case, or OpenImageIO prints it at exit
+    if (!input) throw SceneError(fmt::format("{}: cannot be read as a picture: {}", name, one_line(error)));
+    return read(std::move(input), name, encoding);
   }
   static std::string one_line(std::string text) {
     std::replace(text.begin(), text.end(), '\n', ' ');
@@ -93,14 +116,9 @@ Texture TextureReader::read(std::unique_ptr<OIIO::ImageInput> input, const std::
 Texture Texture::load(const std::string& file, Encoding encoding) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) throw SceneError(file + ": no such picture file");
-  const OIIO::ImageSpec config = TextureReader::options();
-  auto input = OIIO::ImageInput::open(file, &config);
-  const std::string error = OIIO::geterror();  // fetched in any case, or OpenImageIO prints it at exit
-  if (!input) {
-    throw SceneError(
-        fmt::format("{}: cannot be read as a picture: {}", file, TextureReader::one_line(error)));
-  }
-  return TextureReader::read(std::move(input), file, encoding);
+  std::ifstream in(file, std::ios::binary);
+  refuse_cut_png(in, file);
+  return TextureReader::open(file, file, nullptr, encoding);
 }
 
 Texture Texture::decode(std::span<const std::byte> bytes, const std::string& name, Encoding encoding) {
@@ -109,19 +127,14 @@ Texture Texture::decode(std::span<const std::byte> bytes, const std::string& nam
                                                       [](int m, std::byte b) { return m == int(b); });
   };
   // OpenImageIO picks the reader by the file's name; the name of an embedded picture says nothing.
-  const char* pretended = starts({0x89, 'P', 'N', 'G'}) ? "embedded.png"
-                          : starts({0xff, 0xd8})        ? "embedded.jpg"
-                                                        : nullptr;
-  if (!pretended) throw SceneError(name + ": the embedded picture is neither PNG nor JPEG");
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
-  const OIIO::ImageSpec config = TextureReader::options();
-  auto input = OIIO::ImageInput::open(pretended, &config, &memory);
-  const std::string error = OIIO::geterror();
-  if (!input) {
-    throw SceneError(
-        fmt::format("{}: cannot be read as a picture: {}", name, TextureReader::one_line(error)));
+  const char* pretended = starts({0x89, 'P', 'N', 'G'}) ? "embedded.png" : "embedded.jpg";
+  if (!starts({0x89, 'P', 'N', 'G'}) && !starts({0xff, 0xd8})) {
+    throw SceneError(name + ": the embedded picture is neither PNG nor JPEG");
   }
-  return TextureReader::read(std::move(input), name, encoding);
+  std::istringstream in(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  refuse_cut_png(in, name);
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+  return TextureReader::open(pretended, name, &memory, encoding);
 }
 
 Texture::Texture(int width, int height, std::vector<vec4> texels)
