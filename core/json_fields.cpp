@@ -54,11 +54,10 @@ std::string Range::text() const {
   return "";
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr size_t kShown = 60;
-  const bool whole = text.size() <= kShown;
+std::string in_quotes(std::string_view text, size_t longest) {
+  const bool whole = text.size() <= longest;
   // The dump escapes control characters and quotes, and replaces what is not UTF-8.
-  const json shown = std::string(text.substr(0, kShown)) + (whole ? "" : "...");
+  const json shown = std::string(text.substr(0, longest)) + (whole ? "" : "...");
   return shown.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
@@ -132,7 +131,7 @@ vec3 read_vector(const json& value, const std::string& where, Range range) {
 }
 
 vec3 read_color(const json& value, const std::string& where, Range range) {
-  const std::string expected = ranged("a colour: [r, g, b] linear, one number, or \"#rrggbb\"", range);
+  const std::string expected = ranged("a colour", range) + ": [r, g, b] linear, one number, or \"#rrggbb\"";
   if (value.is_number()) return vec3(read_number(value, where, range));
   if (value.is_array() && value.size() == 3) return read_vector(value, where, range);
   if (!value.is_string()) refuse(where, value, expected);

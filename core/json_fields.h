@@ -94,6 +94,6 @@ std::span<const nlohmann::json> read_array(const nlohmann::json& value, const st
 std::string where_of(const std::string& where, std::string_view key);
 std::string where_of(const std::string& where, size_t index);
 /// `text` in quotes, shortened when long, with control characters escaped: safe inside a one-line error.
-std::string in_quotes(std::string_view text);
+std::string in_quotes(std::string_view text, size_t longest = 60);
 
 }  // namespace zonal

@@ -1,4 +1,4 @@
-// "materials": one reader a kind. Texture slots are filled later, when TextureRequests reads the files.
+// "materials": one reader a kind. Texture slots are filled later, when TextureSlots reads the files.
 
 #include <fmt/format.h>
 

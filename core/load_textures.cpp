@@ -10,6 +10,11 @@
 #include "core/loading.h"
 
 namespace zonal {
+namespace {
+
+constexpr size_t kLongestPath = 300;  // shown whole in errors
+
+}  // namespace
 
 std::string Loading::resolve(const std::string& text, const std::string& where) const {
   namespace fs = std::filesystem;
@@ -21,20 +26,20 @@ std::string Loading::resolve(const std::string& text, const std::string& where) 
     if (at != 0 || expanded.compare(0, variable.size(), variable) != 0)
       throw SceneError(
           fmt::format("{}: found {}, expected no variable but ${{ZONAL_DATA}}, and that in front", where,
-                      in_quotes(text)));
+                      in_quotes(text, kLongestPath)));
     const char* data = std::getenv("ZONAL_DATA");
     if (!data || !*data)
       throw SceneError(
           fmt::format("{}: found {}, but the environment variable ZONAL_DATA is not set: set it to the "
                       "folder that holds the downloaded scenes (scenes/README.md says where to get them)",
-                      where, in_quotes(text)));
+                      where, in_quotes(text, kLongestPath)));
     expanded = data + expanded.substr(variable.size());
   }
 
   const fs::path path = fs::path(expanded).is_absolute() ? fs::path(expanded) : fs::path(folder) / expanded;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  const std::string name = in_quotes(path.lexically_normal().string());
+  const std::string name = in_quotes(path.lexically_normal().string(), kLongestPath);
   if (fs::is_directory(status))
     throw SceneError(fmt::format("{}: found the folder {}, expected a file", where, name));
   if (!fs::is_regular_file(status))
@@ -42,15 +47,15 @@ std::string Loading::resolve(const std::string& text, const std::string& where) 
   return path.lexically_normal().string();
 }
 
-void TextureRequests::add(const std::string& file, Texture::Encoding encoding, const std::string& where,
-                          const Texture** slot, int* channel) {
+void TextureSlots::add(const std::string& file, Texture::Encoding encoding, const std::string& where,
+                       const Texture** slot, int* channel) {
   const auto [it, is_new] = index_.try_emplace({file, encoding}, requests_.size());
   if (is_new) requests_.push_back({file, where, encoding, {}, {}});
   requests_[it->second].slots.push_back(slot);
   if (channel) requests_[it->second].channels.push_back(channel);
 }
 
-void TextureRequests::load_all(std::vector<std::unique_ptr<Texture>>& textures) {
+void TextureSlots::load_all(std::vector<std::unique_ptr<Texture>>& textures) {
   std::vector<std::unique_ptr<Texture>> loaded(requests_.size());
   std::vector<std::string> errors(requests_.size());
   tbb::parallel_for(size_t(0), requests_.size(), [&](size_t i) {

@@ -26,7 +26,7 @@ inline constexpr Range kLength{.low = 0, .high = kFarthest, .open_low = true};
 inline constexpr Range kLight{0, kBrightest};
 
 /// Pictures asked for by materials. Each file and encoding is read once, all of them in parallel, at the end.
-class TextureRequests {
+class TextureSlots {
  public:
   /// `slot` receives the texture; `channel`, when given, becomes alpha where the file has one, else red.
   void add(const std::string& file, Texture::Encoding encoding, const std::string& where,
@@ -74,7 +74,7 @@ struct Loading {
   std::string file;    ///< names the scene in errors
   std::string folder;  ///< anchors relative paths
   SceneParts parts;
-  TextureRequests textures;
+  TextureSlots textures;
   std::vector<PendingImport> imports;
   std::vector<ImportedCameras> imported_cameras;
 

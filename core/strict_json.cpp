@@ -72,25 +72,32 @@ class StrictBuilder : public json::json_sax_t {
   }
 
   bool parse_error(size_t position, const std::string&, const nlohmann::detail::exception& error) override {
-    const size_t end = std::min(position, text_.size());
-    // The wrong word itself, as far as it is one.
-    size_t start = end > 0 ? end - 1 : 0;
+    // The library stops at the last letter of the wrong word: point at its first.
+    const std::string_view text(text_.data(), std::min(position, text_.size()));
     const auto in_word = [&](size_t i) {
       const unsigned char c = static_cast<unsigned char>(text_[i]);
       return std::isalnum(c) || c == '-' || c == '+' || c == '.';
     };
-    while (start > 0 && in_word(start) && in_word(start - 1)) --start;
-    size_t stop = start;
+    std::string sentence = sentence_of(error.what());
+    size_t start = text.empty() ? 0 : text.size() - 1;
+    if (sentence.rfind("found string", 0) == 0)
+      start = std::min(start, text.substr(0, start).rfind('"'));
+    else
+      while (start > 0 && in_word(start) && in_word(start - 1)) --start;
+    size_t stop = std::min(start + 1, text_.size());
     while (stop < text_.size() && stop < start + 12 && in_word(stop)) ++stop;
     const std::string word = text_.substr(start, stop - start);
 
-    std::string sentence = sentence_of(error.what());
     if (word == "NaN" || word == "nan" || word.find("nf") != std::string::npos)
       sentence = "found " + word + ", expected a finite number: JSON has no NaN or Infinity";
+    else if (word == "/" || word == "#")
+      sentence = "found " + in_quotes(word) + ", expected no comment: JSON has none";
     else if (dynamic_cast<const json::out_of_range*>(&error))
       sentence = "found " + word + ", expected a number that fits a double";
-    else if (sentence == "invalid literal")
-      sentence = "found " + in_quotes(word.empty() ? text_.substr(start, 1) : word) + ", expected a value";
+    else if (sentence.rfind("invalid literal", 0) == 0)
+      sentence.replace(0, 15, "found " + in_quotes(word));
+    if (sentence.find("expected") == std::string::npos && sentence.rfind("found", 0) == 0)
+      sentence += ", expected a value";
 
     const size_t line_start = start == 0 ? std::string::npos : text_.rfind('\n', start - 1);
     const size_t column = start - (line_start == std::string::npos ? 0 : line_start + 1) + 1;
