@@ -29,10 +29,11 @@ class MaterialReader {
         result_(result),
         after_loading_(after_loading) {}
 
-  void read() {
+  /// `is_named`: false when the file has no materials and this one is Assimp's filler.
+  void read(bool is_named) {
     std::unique_ptr<Material> material;
-    if (name_ == AI_DEFAULT_MATERIAL_NAME) {
-      material = std::make_unique<LambertMaterial>();  // the file names none
+    if (!is_named) {
+      material = std::make_unique<LambertMaterial>();
     } else if (has_number(AI_MATKEY_ROUGHNESS_FACTOR) || has_number(AI_MATKEY_METALLIC_FACTOR)) {
       material = metallic_roughness();
     } else {
@@ -217,10 +218,14 @@ void import_materials(const aiScene& scene, const std::string& file, const std::
                       const std::vector<std::string>& overridden, ImportedFile& result) {
   TextureRequests textures(scene, file);
   std::vector<std::function<void()>> after_loading;
+  const bool is_ply = file.ends_with(".ply") || file.ends_with(".PLY");
   for (const unsigned index : wanted) {
     const std::string name = material_name(scene, index);
-    const bool with_textures = std::find(overridden.begin(), overridden.end(), name) == overridden.end();
-    MaterialReader(*scene.mMaterials[index], name, with_textures, textures, result, after_loading).read();
+    const bool with_textures = std::none_of(overridden.begin(), overridden.end(), [&](const std::string& o) {
+      return o == name || o == "*";  // the scene gives one material to the whole file
+    });
+    MaterialReader(*scene.mMaterials[index], name, with_textures, textures, result, after_loading)
+        .read(!is_ply && name != AI_DEFAULT_MATERIAL_NAME);
   }
   result.textures = textures.load();
   for (const auto& finish : after_loading) finish();

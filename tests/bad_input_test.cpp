@@ -157,7 +157,7 @@ TEST(bad_input, any_value_of_the_wrong_kind_is_one_line) {
   using nlohmann::json;
   const fs::path file = kTests / "scene_files" / "everything.json";
   const json scene = json::parse(read_all(file));
-  const std::vector<json> others{nullptr, -1, 1e30, "no such thing", json::array(), json::object()};
+  const std::vector<json> others{nullptr, -1, 1e30, "no such thing", json::array()};
   const json flat = scene.flatten();
   size_t refused = 0, tried = 0;
   for (const auto& [pointer, value] : flat.items()) {
