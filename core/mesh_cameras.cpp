@@ -38,17 +38,17 @@ void import_cameras(const aiScene& scene, const mat4& to_world, ImportedFile& re
     const aiCamera& source = *scene.mCameras[i];
     const mat4 m = node_to_world(scene, source.mName, to_world);
     Camera camera;
-    camera.position = point(m, source.mPosition);
+    // The node's own place: mPosition repeats its translation.
+    camera.position = vec3(m[3]);
     camera.forward = direction(m, source.mLookAt, vec3(0, 0, -1));
     const vec3 right = glm::cross(camera.forward, direction(m, source.mUp, vec3(0, 1, 0)));
     // Looking straight along "up": any sideways direction will do.
     camera.right = glm::length(right) > 1e-6f ? glm::normalize(right) : Frame(camera.forward).x;
     camera.up = glm::cross(camera.right, camera.forward);
-    // Assimp's header speaks of half an angle; its glTF reader gives the whole horizontal one, made from
-    // glTF's vertical angle with the aspect ratio, or with 1 where the file has none. mesh_import_test.cpp
-    // holds it to that.
+    // Assimp's header promises half the horizontal angle; its glTF reader stores glTF's whole vertical angle
+    // times the aspect ratio, or times 1 where the file has none. gltf_import_test.cpp holds it to that.
     const float aspect = source.mAspect > 0 ? source.mAspect : 1;
-    const float fov = 2 * std::atan(std::tan(0.5f * source.mHorizontalFOV) / aspect);
+    const float fov = source.mHorizontalFOV / aspect;
     if (fov > 0 && fov < kPi) camera.vertical_fov = fov;
     if (source.mAspect > 0)
       camera.width = int(std::clamp(std::round(camera.height * aspect), 1.0f, 16384.0f));
