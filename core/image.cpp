@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "core/atomic_file.h"
+#include "core/cut_png.h"
 #include "core/error.h"
 
 namespace zonal {
@@ -172,11 +174,13 @@ ImageFile read_image(const std::string& file) {
   if (!std::filesystem::exists(file, error)) throw SceneError(fmt::format("{}: no such file", file));
   if (std::filesystem::is_directory(file, error))
     throw SceneError(fmt::format("{}: found a folder, expected an image", file));
+  std::ifstream stream(file, std::ios::binary);
+  refuse_cut_png(stream, file);
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours as stored, not multiplied by alpha
   const auto input = OIIO::ImageInput::open(file, &wishes);
-  if (!input)
-    throw SceneError(fmt::format("{}: no image that can be read: {}", file, one_line(OIIO::geterror())));
+  const std::string refusal = OIIO::geterror();  // fetched in any case, or OpenImageIO prints it at exit
+  if (!input) throw SceneError(fmt::format("{}: no image that can be read: {}", file, one_line(refusal)));
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kLargestSide ||
       spec.height > kLargestSide || double(spec.width) * spec.height * spec.nchannels > kLargestImage) {
