@@ -81,8 +81,7 @@ void read_slot(Loading& loading, Fields& fields, const char* key, TexturedNumber
   }
 }
 
-// ---- one reader a kind
-// --------------------------------------------------------------------------------------------
+// ---- one reader a kind -------------------------------------------------------------------------------
 
 std::unique_ptr<Material> lambert(Loading& loading, Fields& fields) {
   auto m = std::make_unique<LambertMaterial>();

@@ -125,8 +125,7 @@ TEST(bad_input, absurd_sizes_asked_for_by_the_caller) {
             "pixels");
 }
 
-// ---- damaged copies of a scene that uses every key
-// ------------------------------------------------------------------
+// ---- damaged copies of a scene that uses every key ---------------------------------------------------
 
 std::string read_all(const fs::path& file) {
   std::ostringstream text;

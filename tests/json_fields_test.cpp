@@ -150,8 +150,7 @@ TEST(where, pointers_are_json_pointers) {
   EXPECT_EQ(where_of("a.json: /x", "a/b~c"), "a.json: /x/a~1b~0c");  // RFC 6901
 }
 
-// ---- parameters
-// ---------------------------------------------------------------------------------------------------
+// ---- parameters --------------------------------------------------------------------------------------
 
 struct SomeParams {
   enum class Distribution { grid, paths };

@@ -68,8 +68,7 @@ TEST(transform, knows_mirrors_and_uniform_scales) {
   EXPECT_FALSE(uniform_scale(m(R"({"matrix": [1, 0.1, 0, 0,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1]})")));
 }
 
-// ---- shapes
-// ---------------------------------------------------------------------------------------------------------
+// ---- shapes ------------------------------------------------------------------------------------------
 
 /// Whether the ray meets the outside of what it hits.
 bool meets_front(const Scene& scene, vec3 origin, vec3 direction, vec3* normal = nullptr) {
