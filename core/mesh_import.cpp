@@ -79,6 +79,10 @@ void check_indices(const aiScene& scene, const std::string& file) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      if (mesh.mFaces[f].mNumIndices == 0) {
+        throw SceneError(fmt::format("{}: mesh {}: face {} has no vertices (is the file cut short?)", file,
+                                     mesh_name(mesh), f));
+      }
       for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k) {
         if (mesh.mFaces[f].mIndices[k] < mesh.mNumVertices) continue;
         throw SceneError(fmt::format("{}: mesh {}: face {} uses vertex {}, but there are {} vertices", file,
@@ -92,6 +96,33 @@ void check_indices(const aiScene& scene, const std::string& file) {
   }
 }
 
+/// Refuses what Assimp must not be given: a file that is not what its name says is tried by all of Assimp's
+/// readers in turn, and a PLY header without an end is read for ever (Assimp 5.2).
+void check_head(const std::string& file, const std::string& extension) {
+  std::ifstream in(file, std::ios::binary);
+  const auto refuse = [&](const char* reason) {
+    throw SceneError(fmt::format("{}: cannot be read as a mesh: {}", file, reason));
+  };
+  std::string line;
+  if (extension == ".ply") {
+    std::getline(in, line);
+    if (!line.starts_with("ply")) refuse("a PLY file starts with \"ply\"");
+    for (int i = 0; i < 10000 && std::getline(in, line); ++i) {
+      while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) line.pop_back();
+      if (line == "end_header") return;
+    }
+    refuse("the PLY header has no end_header line");
+  } else if (extension == ".glb") {
+    char magic[4] = {};
+    in.read(magic, 4);
+    if (std::string_view(magic, 4) != "glTF") refuse("a GLB file starts with \"glTF\"");
+  } else if (extension == ".gltf") {
+    char first = 0;
+    in >> first;
+    if (first != '{') refuse("a glTF file starts with \"{\"");
+  }
+}
+
 const aiScene& read(Assimp::Importer& importer, const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) throw SceneError(file + ": no such mesh file");
@@ -100,6 +131,7 @@ const aiScene& read(Assimp::Importer& importer, const std::string& file) {
     throw SceneError(
         fmt::format("{}: found a \"{}\" file, expected .obj, .ply, .gltf or .glb", file, extension));
   }
+  check_head(file, extension);
   const auto refuse = [&] {
     std::string reason = importer.GetErrorString();
     std::replace(reason.begin(), reason.end(), '\n', ' ');
