@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "apps/commands.h"
 #include "core/error.h"
 
@@ -19,6 +21,16 @@ void apply_settings(const std::vector<std::string>& entries, nlohmann::json* set
     const nlohmann::json parsed = nlohmann::json::parse(value, nullptr, false);
     (*settings)[entry.substr(0, equals)] = parsed.is_discarded() ? nlohmann::json(value) : parsed;
   }
+}
+
+void add_pixels_option(CLI::App& command, RenderOptions::Pixels* pixels) {
+  using Pixels = RenderOptions::Pixels;
+  const std::map<std::string, Pixels> names{
+      {"automatic", Pixels::automatic}, {"center", Pixels::center}, {"jitter", Pixels::jitter}};
+  command
+      .add_option("--pixels", *pixels,
+                  "where in a pixel rays start: automatic (center for one pass, else jitter), center, jitter")
+      ->transform(CLI::CheckedTransformer(names));
 }
 
 void parse_size(const std::string& text, int* width, int* height) {

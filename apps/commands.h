@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "core/render.h"
+
 namespace zonal {
 
 inline constexpr int kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 130;
@@ -34,6 +36,9 @@ void catch_interrupts();
 /// `--set key=value` entries laid over `settings`: value is JSON where it parses as such (400, 0.5, true),
 /// else text. Throws SceneError when there is no '='.
 void apply_settings(const std::vector<std::string>& entries, nlohmann::json* settings);
+
+/// `--pixels automatic|center|jitter`.
+void add_pixels_option(CLI::App& command, RenderOptions::Pixels* pixels);
 
 /// "640x360" to width and height, both in 1..32768. Throws SceneError otherwise.
 void parse_size(const std::string& text, int* width, int* height);

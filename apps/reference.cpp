@@ -88,6 +88,7 @@ void add_reference(CLI::App& app, int* exit_code) {
   command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
   command->add_option("--threads", options->threads, "threads; 0: all")->check(CLI::Range(0, 4096));
   command->add_option("--seed", options->request.seed, "random seed");
+  add_pixels_option(*command, &options->request.pixels);
   command->add_option("--frame", options->request.frame, "frame of a scene with keyframes");
   command->add_option("-o,--output", options->output,
                       "reference to write (.exr); its record lies beside it (.json)");

@@ -23,7 +23,8 @@ struct Options {
   int passes = 0, threads = 0, frame = 0;
   double seconds = 0;
   uint64_t seed = 0;
-  bool quiet = false, jitter = false;
+  bool quiet = false;
+  RenderOptions::Pixels pixels = RenderOptions::Pixels::automatic;
 };
 
 constexpr int kDefaultPasses = 16;
@@ -52,7 +53,7 @@ nlohmann::json counters_json(const RenderReport& report) {
 /// How to have the same picture again, bit for bit, without a clock.
 std::string repeat_line(const Options& options, const RenderReport& report) {
   std::string line = fmt::format("--passes {}", report.passes);
-  if (report.passes == 1) line += " --jitter";
+  if (report.passes == 1) line += " --pixels jitter";
   const auto lights = report.pass.numbers.find("pass_lights");
   if (lights != report.pass.numbers.end()) line += fmt::format(" --set pass_lights={:.0f}", lights->second);
   return line + fmt::format(" --seed {}", options.seed);
@@ -85,7 +86,7 @@ int render_command(const Options& options) {
   Budget budget{.passes = options.passes, .seconds = options.seconds};
   if (budget.passes == 0 && budget.seconds == 0) budget.passes = file.passes > 0 ? file.passes : kDefaultPasses;
   const RenderOptions render_options{.seed = options.seed, .threads = options.threads,
-                                     .always_jitter = options.jitter, .stop = &stop_asked()};
+                                     .pixels = options.pixels, .stop = &stop_asked()};
   Film film(scene.camera().width, scene.camera().height);
   ProgressPrinter progress(fmt::format("{} {}", scene.name(), name), options.quiet);
   const RenderReport report = render(scene, *integrator, film, budget, render_options, {},
@@ -157,7 +158,7 @@ void add_render(CLI::App& app, int* exit_code) {
   command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again")
       ->allow_extra_args(false);
   command->add_option("--stats", options->stats, "JSON file for settings, times and counters");
-  command->add_flag("--jitter", options->jitter, "jitter inside pixels even with a single pass");
+  add_pixels_option(*command, &options->pixels);
   command->add_flag("--quiet", options->quiet, "print errors and warnings only");
   command->callback([=] { *exit_code = render_command(*options); });
 }

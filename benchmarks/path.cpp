@@ -29,7 +29,7 @@ constexpr int kWidth = 640, kHeight = 360, kRounds = 7;
 RenderReport render_pass(const Scene& scene, int threads) {
   const auto path = find_integrator("path", "").make(nlohmann::json::parse(kSettings), "", nullptr);
   Film film(kWidth, kHeight);
-  return render(scene, *path, film, {.passes = 1}, {.seed = 1, .threads = threads, .always_jitter = true});
+  return render(scene, *path, film, {.passes = 1}, {.seed = 1, .threads = threads, .pixels = RenderOptions::Pixels::jitter});
 }
 
 std::vector<RayRecord> record(const Scene& scene) {

@@ -67,8 +67,7 @@ std::unique_ptr<Light> spot(Loading&, Fields& fields) {
   const float inner = fields.number("inner", std::fmax(0.0f, outer - 5.0f), {0, 90});
   if (inner > outer)
     fields.fail("inner", fmt::format("found {}, expected at most \"outer\", which is {}", inner, outer));
-  light->outer = outer * kRadians;
-  light->inner = inner * kRadians;
+  light->cone = {inner * kRadians, outer * kRadians};
   read_intensity(fields, *light);
   return light;
 }

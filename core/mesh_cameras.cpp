@@ -76,8 +76,7 @@ void import_lights(const aiScene& scene, const std::string& file, const mat4& to
       auto s = std::make_unique<SpotLight>();
       s->position = position, s->direction = towards, s->intensity = color;
       // glTF's are half angles up to pi/2; ours stay below.
-      s->outer = std::clamp(source.mAngleOuterCone, 1e-3f, 0.5f * kPi - 1e-3f);
-      s->inner = std::clamp(source.mAngleInnerCone, 0.0f, s->outer);
+      s->cone = {source.mAngleInnerCone, std::clamp(source.mAngleOuterCone, 1e-3f, 0.5f * kPi - 1e-3f)};
       light = std::move(s);
     } else if (source.mType == aiLightSource_DIRECTIONAL) {
       auto d = std::make_unique<DirectionalLight>();

@@ -94,6 +94,7 @@ std::string reference_key(const ReferenceRequest& request) {
   hash.add(request.settings.dump());
   hash.add(fmt::format("passes {} seconds {} size {}x{} frame {} seed {}", request.passes, request.seconds,
                        request.width, request.height, request.frame, request.seed));
+  hash.add(request.pixels == RenderOptions::Pixels::center ? "pixel centres" : "jittered pixels");
   return hash.text();
 }
 
@@ -118,7 +119,7 @@ std::optional<Reference> make_reference(const Scene& scene, const ReferenceReque
         row.make(request.settings, fmt::format("integrator \"{}\"", request.integrator), &parameters);
     const RenderOptions render_options{.seed = half_seed(request.seed, half),
                                        .threads = options.threads,
-                                       .always_jitter = true,
+                                       .pixels = request.pixels,
                                        .stop = options.stop};
     reports[half] = render(scene, *integrator, films[half], budget, render_options, {},
                            half_progress(options, half, reports[0]));
@@ -142,6 +143,7 @@ std::optional<Reference> make_reference(const Scene& scene, const ReferenceReque
   record["parameters"] = parameters;
   record["passes"] = {reports[0].passes, reports[1].passes};
   record["seed"] = request.seed;
+  record["pixels"] = request.pixels == RenderOptions::Pixels::center ? "center" : "jitter";
   record["seeds"] = {half_seed(request.seed, 0), half_seed(request.seed, 1)};
   record["resolution"] = {width, height};
   record["frame"] = request.frame;

@@ -76,11 +76,7 @@ void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t
     }
   }
   // Trace first, look up afterwards: the tree stays in cache, then the geometry does.
-  for (int i = 0; i < tile->count; ++i) {
-    if (!tile->found(i)) continue;
-    tile->surfaces[i] = scene.surface(tile->hits[i], tile->directions[i]);
-    tile->bsdfs[i] = scene.bsdf(tile->surfaces[i]);
-  }
+  scene.look_up(tile->hits.data(), tile->directions.data(), tile->count, tile->surfaces.data(), tile->bsdfs.data());
 }
 
 RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
@@ -90,7 +86,9 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
   Camera camera = scene.camera();
   camera.width = film.width(), camera.height = film.height();
   const bool timed = budget.seconds > 0;
-  const bool jitter = options.always_jitter || timed || budget.passes > 1;
+  using Pixels = RenderOptions::Pixels;
+  const bool jitter = options.pixels == Pixels::jitter ||
+                      (options.pixels == Pixels::automatic && (timed || budget.passes > 1));
   const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
   oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   oneapi::tbb::task_arena arena(threads);

@@ -20,9 +20,9 @@ struct Budget {
 struct RenderOptions {
   uint64_t seed = 0;
   int threads = 0;  ///< 0: all
-  /// More than one pass jitters inside the pixel, a single one uses pixel centres. A timed render cannot know how many
-  /// passes it will have and jitters; so does `always_jitter`, with which a single pass of it can be had again.
-  bool always_jitter = false;
+  /// Where in the pixel rays start. `automatic`: a single pass at the centre, more passes jittered over the pixel; a
+  /// timed render cannot know how many passes it will have, and jitters.
+  enum class Pixels { automatic, center, jitter } pixels = Pixels::automatic;
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler or another thread
 };
 

@@ -113,6 +113,9 @@ class Scene {
   /// `direction` is the ray's, unit.
   Surface surface(const Hit& hit, vec3 direction) const;
   Bsdf bsdf(const Surface& s) const { return material(s.material).at(s.uv); }
+  /// `surface` and `bsdf` of many hits at once, `directions` being their rays'; where nothing was hit the outputs are
+  /// left as they are. Faster than one by one: each step asks the cache for what the next will read.
+  void look_up(const Hit* hits, const vec3* directions, int count, Surface* surfaces, Bsdf* bsdfs) const;
   const Material& material(uint32_t index) const;
   /// Emitted radiance towards w_out; 0 where the surface does not glow.
   vec3 emitted(const Surface& s) const;

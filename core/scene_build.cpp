@@ -161,6 +161,7 @@ void Scene::Impl::take(SceneParts parts) {
     const Material& material = *materials[data.material];
     shape.material = &material;
     shape.normal_map = material.normal_map, shape.normal_scale = material.normal_scale;
+    shape.first_texture = shape.material->first_texture();
     shape.has_tangents = material.normal_map || is_anisotropic(material);
     shape.has_mask = can_cut(material);
   });

@@ -28,6 +28,7 @@ struct Shape {
       nullptr;  ///< triangle numbers before zero-area ones were dropped; null: none were
   const Material* material = nullptr;
   const Texture* normal_map = nullptr;
+  const Texture* first_texture = nullptr;  ///< what the material will read
   float normal_scale = 1;
   vec3 center{0};
   float radius = 0;  ///< > 0: a sphere

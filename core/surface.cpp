@@ -143,6 +143,29 @@ Surface Scene::surface(const Hit& hit, vec3 direction) const {
   return s;
 }
 
+void Scene::look_up(const Hit* hits, const vec3* directions, int count, Surface* surfaces, Bsdf* bsdfs) const {
+  // A miss of the cache costs as much as a ray: three rounds of asking ahead hide most of them.
+  const Shape* shapes = impl_->shapes.data();
+  for (int i = 0; i < count; ++i) {
+    if (hits[i].found() && !(shapes[hits[i].shape].radius > 0))
+      __builtin_prefetch(&shapes[hits[i].shape].triangles[hits[i].primitive]);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!hits[i].found() || shapes[hits[i].shape].radius > 0) continue;
+    const Shape& shape = shapes[hits[i].shape];
+    const uvec3 t = shape.triangles[hits[i].primitive];
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&shape.vertices[t[corner]]);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (!hits[i].found()) continue;
+    surfaces[i] = surface(hits[i], directions[i]);
+    if (const Texture* texture = shapes[hits[i].shape].first_texture) texture->prefetch(surfaces[i].uv);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (hits[i].found()) bsdfs[i] = bsdf(surfaces[i]);
+  }
+}
+
 vec3 offset_origin(const Surface& s, vec3 w) {
   return move_off(s.position, s.normal, w, 4 * s.error);
 }

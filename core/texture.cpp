@@ -181,6 +181,13 @@ vec4 Texture::sample(vec2 uv) const {
   return (1 - fy) * upper + fy * lower;
 }
 
+void Texture::prefetch(vec2 uv) const {
+  const int x = std::min(int(repeat(uv.x) * width_), width_ - 1);
+  const int y = std::min(int((1 - repeat(uv.y)) * height_), height_ - 1);
+  __builtin_prefetch(rgba8_.empty() ? static_cast<const void*>(&rgba32f_[size_t(y) * width_ + x])
+                                    : static_cast<const void*>(&rgba8_[place(x, y)]));
+}
+
 float Texture::alpha(vec2 uv) const {
   const int x = std::min(int(repeat(uv.x) * width_), width_ - 1);
   const int y = std::min(int((1 - repeat(uv.y)) * height_), height_ - 1);

@@ -30,6 +30,8 @@ class Texture {
   /// u right, v UP (OBJ's and Blender's convention; importers flip where a format says otherwise).
   vec4 sample(vec2 uv) const;
   vec3 rgb(vec2 uv) const { return vec3(sample(uv)); }
+  /// Asks the cache for what `sample(uv)` will read: a picture is far larger than any cache.
+  void prefetch(vec2 uv) const;
   /// Nearest alpha, for masks: cheap and without blending across the edge.
   float alpha(vec2 uv) const;
   bool has_alpha() const { return has_alpha_; }  ///< some texel's alpha is below 1

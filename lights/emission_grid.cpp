@@ -19,7 +19,7 @@ Frame cube_face(int face) {
 }  // namespace
 
 bool EmissionGrid::suits(const Light& light) {
-  if (const auto* spot = dynamic_cast<const SpotLight*>(&light)) return spot->outer <= kWidestCone;
+  if (const auto* spot = dynamic_cast<const SpotLight*>(&light)) return spot->cone.outer <= kWidestCone;
   return dynamic_cast<const PointLight*>(&light) || dynamic_cast<const DirectionalLight*>(&light);
 }
 
@@ -60,7 +60,7 @@ EmissionSample EmissionGrid::sample(int cell, vec2 u) const {
   }
 
   const auto& spot = static_cast<const SpotLight&>(*light_);
-  const float width = std::tan(spot.outer);
+  const float width = std::tan(spot.cone.outer);
   const vec2 q = width * p;
   const float q2 = glm::dot(q, q), secant = std::sqrt(1.0f + q2);
   s.origin = spot.position;

@@ -73,12 +73,22 @@ struct PointLight : Light {
   float importance(vec3 x) const override;
 };
 
-/// Cone of light with a smooth edge: full inside `inner`, nothing outside `outer`, smoothstep of the cosine between.
+/// A spot's cone: full inside `inner`, nothing outside `outer`, smoothstep of the cosine between. Angles become
+/// v = 1 - cos once, here: lights are asked at every bounce.
+struct SpotCone {
+  float inner, outer;              ///< half angles, radians, 0 <= inner <= outer < pi/2
+  float v_inner, v_outer, v_edge;  ///< 1 - cos of them; v_edge = v_outer - v_inner
+  SpotCone(float inner, float outer);
+  float falloff(float v) const;  ///< [0,1]
+  float solid_angle() const;     ///< integral of the falloff, sr
+};
+
+/// Cone of light with a smooth edge.
 struct SpotLight : Light {
   vec3 position{0};
   vec3 direction{0, -1, 0};  ///< unit
   vec3 intensity{1};         ///< W sr^-1 on the axis
-  float inner = 0.3f, outer = 0.5f;  ///< half angles, radians, inner <= outer < pi/2
+  SpotCone cone{0.3f, 0.5f};
   /// Share of the axis intensity that leaves at the angle whose cosine is given, [0,1].
   float falloff(float cos_angle) const;
   /// The same from 1 - cos, for cones so narrow that their cosine is 1 in float.

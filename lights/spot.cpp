@@ -18,23 +18,6 @@ float versine(float angle) {
   return 2.0f * sqr(std::sin(0.5f * angle));
 }
 
-struct Cone {
-  float v_inner, v_outer, v_edge;  ///< v_edge = v_outer - v_inner
-
-  explicit Cone(const SpotLight& s) {
-    const float outer = std::max(s.outer, 0.0f), inner = std::clamp(s.inner, 0.0f, outer);
-    v_inner = versine(inner), v_outer = versine(outer);
-    v_edge = 2.0f * std::sin(0.5f * (outer + inner)) * std::sin(0.5f * (outer - inner));
-  }
-  float falloff(float v) const {
-    if (v <= v_inner) return 1;
-    if (v >= v_outer) return 0;
-    const float t = std::clamp((v_outer - v) / v_edge, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);  // (SPOT-1)
-  }
-  float solid_angle() const { return 2.0f * kPi * (v_inner + 0.5f * v_edge); }  // (SPOT-2)
-};
-
 /// 1 - cos of the angle between two unit vectors, from their difference.
 float versine_between(vec3 a, vec3 b) {
   return 0.5f * glm::dot(a - b, a - b);
@@ -52,16 +35,34 @@ float sample_edge(float u) {
 
 }  // namespace
 
+SpotCone::SpotCone(float inner_angle, float outer_angle)
+    : inner(std::clamp(inner_angle, 0.0f, std::max(outer_angle, 0.0f))),
+      outer(std::max(outer_angle, 0.0f)),
+      v_inner(versine(inner)),
+      v_outer(versine(outer)),
+      v_edge(2.0f * std::sin(0.5f * (outer + inner)) * std::sin(0.5f * (outer - inner))) {}
+
+float SpotCone::falloff(float v) const {
+  if (v <= v_inner) return 1;
+  if (v >= v_outer) return 0;
+  const float t = std::clamp((v_outer - v) / v_edge, 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);  // (SPOT-1)
+}
+
+float SpotCone::solid_angle() const {
+  return 2.0f * kPi * (v_inner + 0.5f * v_edge);  // (SPOT-2)
+}
+
 float SpotLight::falloff(float cos_angle) const {
   return falloff_versine(1.0f - cos_angle);
 }
 
 float SpotLight::falloff_versine(float one_minus_cos) const {
-  return Cone(*this).falloff(one_minus_cos);
+  return cone.falloff(one_minus_cos);
 }
 
 vec3 SpotLight::power() const {
-  return intensity * Cone(*this).solid_angle();
+  return intensity * cone.solid_angle();
 }
 
 LightSample SpotLight::sample(vec3 x, vec2) const {
@@ -71,7 +72,7 @@ LightSample SpotLight::sample(vec3 x, vec2) const {
   if (!(distance2 > 0)) return s;
   const float distance = std::sqrt(distance2);
   const vec3 w_in = to_light / distance;
-  const vec3 irradiance = intensity * (Cone(*this).falloff(versine_between(-w_in, direction)) / distance2);
+  const vec3 irradiance = intensity * (cone.falloff(versine_between(-w_in, direction)) / distance2);
   if (is_black(irradiance) || !is_finite(irradiance)) return s;
   s.distance = distance;
   s.w_in = w_in;
@@ -82,7 +83,6 @@ LightSample SpotLight::sample(vec3 x, vec2) const {
 }
 
 EmissionSample SpotLight::sample_emission(vec2, vec2 u) const {
-  const Cone cone(*this);
   // Density proportional to the falloff: every ray carries the same flux. First the full cone or its edge ...
   const float full = cone.v_inner, edge = 0.5f * cone.v_edge;
   const float split = full + edge > 0 ? full / (full + edge) : 1.0f;
@@ -99,7 +99,7 @@ float SpotLight::importance(vec3 x) const {
   const float distance2 = glm::dot(from_light, from_light);
   // At the tip itself the direction is undefined: take the axis.
   const float share = distance2 > 0
-                          ? Cone(*this).falloff(versine_between(from_light / std::sqrt(distance2), direction))
+                          ? cone.falloff(versine_between(from_light / std::sqrt(distance2), direction))
                           : 1.0f;
   return std::fmin(luminance(intensity) * share / std::fmax(distance2, 1e-12f), 1e30f);
 }

@@ -29,6 +29,8 @@ class Material {
   virtual ~Material() = default;
   virtual Bsdf at(vec2 uv) const = 0;
   virtual const char* type() const = 0;  ///< the scene file's name of the kind
+  /// The texture `at` reads first, or null: Scene::look_up asks the cache for it ahead of time.
+  virtual const Texture* first_texture() const { return nullptr; }
 
   std::string name;
   const Texture* normal_map = nullptr;  ///< tangent space, xyz = 2 rgb - 1, y up
@@ -44,6 +46,7 @@ class Material {
 struct LambertMaterial : Material {
   TexturedColor albedo{vec3(0.5f)};
   Bsdf at(vec2 uv) const override;
+  const Texture* first_texture() const override { return albedo.texture; }
   const char* type() const override { return "lambert"; }
 };
 
@@ -53,6 +56,7 @@ struct BlinnPhongMaterial : Material {
   TexturedColor diffuse{vec3(0.5f)}, specular{vec3(0.04f)};
   float exponent = 50;
   Bsdf at(vec2 uv) const override;
+  const Texture* first_texture() const override { return diffuse.texture; }
   const char* type() const override { return "blinn_phong"; }
 };
 
@@ -65,6 +69,7 @@ struct ConductorMaterial : Material {
   TexturedNumber roughness{0.3f};
   float anisotropy = 0;
   Bsdf at(vec2 uv) const override;
+  const Texture* first_texture() const override { return tint.texture ? tint.texture : roughness.texture; }
   const char* type() const override { return "conductor"; }
 };
 
@@ -77,6 +82,7 @@ struct CoatedMaterial : Material {
   float anisotropy = 0;
   CoatTable table;  ///< of (ior, anisotropy); made by the first call of `at`
   Bsdf at(vec2 uv) const override;
+  const Texture* first_texture() const override { return albedo.texture ? albedo.texture : roughness.texture; }
   const char* type() const override { return "coated"; }
 };
 
@@ -85,6 +91,7 @@ struct MetallicRoughnessMaterial : Material {
   TexturedColor base_color{vec3(0.8f)};
   TexturedNumber metallic{0, nullptr, 2}, roughness{0.5f, nullptr, 1};
   Bsdf at(vec2 uv) const override;
+  const Texture* first_texture() const override { return base_color.texture ? base_color.texture : roughness.texture; }
   const char* type() const override { return "metallic_roughness"; }
 };
 

@@ -74,8 +74,8 @@ void check(const ImportedFile& f) {
   // Turned by -90 degrees about x: -z becomes -y.
   EXPECT_LT(length(torch.direction - vec3(0, -1, 0)), 1e-6f);
   EXPECT_EQ(torch.intensity, vec3(2));
-  EXPECT_NEAR(torch.inner, 0.2f, 1e-6f);
-  EXPECT_NEAR(torch.outer, 0.6f, 1e-6f);
+  EXPECT_NEAR(torch.cone.inner, 0.2f, 1e-6f);
+  EXPECT_NEAR(torch.cone.outer, 0.6f, 1e-6f);
   const auto& sun = dynamic_cast<const DirectionalLight&>(*f.lights[2]);
   EXPECT_LT(length(sun.direction - vec3(0, -1, 0)), 1e-6f);
   EXPECT_EQ(sun.irradiance, vec3(3));

@@ -36,7 +36,7 @@ TEST(emission, carries_the_flux_that_sampling_receives) {
   expect_same_flux(point, "point");
   SpotLight spot;
   spot.position = {0.3f, 2, -0.4f}, spot.direction = glm::normalize(vec3(0.1f, -1, 0.2f));
-  spot.inner = 0.2f, spot.outer = 0.7f;
+  spot.cone = {0.2f, 0.7f};
   expect_same_flux(spot, "spot");
   DirectionalLight sun;
   sun.direction = glm::normalize(vec3(0.5f, -1, 0.2f));
@@ -109,7 +109,7 @@ TEST(emission_grid, takes_the_rectangle_nearest_to_the_number) {
   EXPECT_EQ(EmissionGrid(spot, 1).cells(), 1);
   EXPECT_EQ(EmissionGrid(point, 600).cells(), 600);
   SpotLight wide;
-  wide.outer = 1.5f;
+  wide.cone = {0.3f, 1.5f};
   EXPECT_FALSE(EmissionGrid::suits(wide));
   EXPECT_FALSE(EmissionGrid::suits(ball(vec3(0), 1)));
 }
@@ -118,8 +118,7 @@ TEST(emission_grid, rays_carry_the_intensity_times_the_solid_angle_of_any_cone) 
   PointLight point;
   point.intensity = vec3(3);
   SpotLight spot;
-  spot.direction = glm::normalize(vec3(1, -2, 0.5f)), spot.intensity = vec3(3), spot.inner = 0.3f,
-  spot.outer = 1.2f;
+  spot.direction = glm::normalize(vec3(1, -2, 0.5f)), spot.intensity = vec3(3), spot.cone = {0.3f, 1.2f};
   // The point light's cone looks at a corner of the cube, where the cells fill the smallest solid angle.
   const vec3 corner = glm::normalize(vec3(1, 1, 1));
   struct Case {

@@ -44,7 +44,7 @@ TEST(point_light, follows_the_inverse_square) {
 
 TEST(spot_light, is_full_inside_half_way_down_in_the_middle_of_the_edge_and_dark_outside) {
   SpotLight light;
-  light.direction = {0, 0, -1}, light.intensity = vec3(8), light.inner = 0.2f, light.outer = 0.5f;
+  light.direction = {0, 0, -1}, light.intensity = vec3(8), light.cone = {0.2f, 0.5f};
   const float middle = std::acos(0.5f * (std::cos(0.2f) + std::cos(0.5f)));
   const auto at = [&](float angle) {
     return light.sample(2.0f * vec3(std::sin(angle), 0, -std::cos(angle)), {}).radiance.y;
@@ -62,7 +62,7 @@ TEST(spot_light, is_full_inside_half_way_down_in_the_middle_of_the_edge_and_dark
 TEST(spot_light, power_is_the_integral_of_its_falloff) {
   for (const vec2 angles : {vec2(0.2f, 0.5f), vec2(0.4f, 0.4f), vec2(0, 1.5f), vec2(0, 1e-4f)}) {
     SpotLight light;
-    light.inner = angles.x, light.outer = angles.y;
+    light.cone = {angles.x, angles.y};
     // Midpoints in the angle: 20000 steps leave 1e-8 of a smooth integrand, 1e-4 of one that jumps at the
     // end.
     double integral = 0;

@@ -157,7 +157,7 @@ TEST(Path, one_bounce_without_occlusion_is_a_plain_integral_over_the_walls) {
     const BoxPoint x = box_point(scene, i, 4);
     return (4 * one_bounce(x, 240) - one_bounce(x, 120)) / 3;
   };
-  expect_agreement(pixel_estimates(scene, R"({"min_bounces": 1, "max_bounces": 1, "occlusion": "none"})", 4, 100, 40), truth);
+  expect_agreement(pixel_estimates(scene, R"({"min_bounces": 1, "max_bounces": 1, "occlusion": "none"})", 4, 100, 400), truth);
 }
 
 TEST(Path, bounces_asked_for_apart_add_up_to_the_whole) {

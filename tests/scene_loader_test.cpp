@@ -149,8 +149,8 @@ TEST(light, point_spot_and_sun_with_their_numbers) {
       scene_with(R"("lights": [{"type": "spot", "position": [0, 5, 0], "look_at": [3, 1, 0], "intensity": 7,
                                             "inner": 10, "outer": 25}])");
   EXPECT_LT(glm::length(only_light<SpotLight>(b).direction - vec3(0.6f, -0.8f, 0)), 1e-6f);
-  EXPECT_FLOAT_EQ(only_light<SpotLight>(b).inner, 10 * kPi / 180);
-  EXPECT_FLOAT_EQ(only_light<SpotLight>(b).outer, 25 * kPi / 180);
+  EXPECT_FLOAT_EQ(only_light<SpotLight>(b).cone.inner, 10 * kPi / 180);
+  EXPECT_FLOAT_EQ(only_light<SpotLight>(b).cone.outer, 25 * kPi / 180);
   EXPECT_EQ(only_light<SpotLight>(b).intensity, vec3(7));
   const Scene c =
       scene_with(R"("lights": [{"type": "directional", "direction": [0, -4, 3], "irradiance": [3, 2, 1]}])");

@@ -16,7 +16,7 @@ Image render_with(const Scene& scene, const std::string& name, const RenderSpec&
   const auto integrator = find_integrator(name, "test").make(nlohmann::json::parse(spec.settings), "test", nullptr);
   Film film(spec.width, spec.height);
   render(scene, *integrator, film, {.passes = spec.passes},
-         {.seed = spec.seed, .threads = spec.threads, .always_jitter = spec.jitter});
+         {.seed = spec.seed, .threads = spec.threads, .pixels = spec.jitter ? RenderOptions::Pixels::jitter : RenderOptions::Pixels::automatic});
   return film.radiance();
 }
 

@@ -53,7 +53,7 @@ std::unique_ptr<PointLight> point(vec3 position, vec3 intensity) {
 std::unique_ptr<SpotLight> spot(vec3 position, vec3 direction, vec3 intensity) {
   auto light = std::make_unique<SpotLight>();
   light->position = position, light->direction = glm::normalize(direction), light->intensity = intensity;
-  light->inner = 0.3f, light->outer = 0.9f;
+  light->cone = {0.3f, 0.9f};
   return light;
 }
 

@@ -33,10 +33,11 @@ class PathIntegrator : public Integrator {
   void shade(const Tile&, vec3* radiance, Sampler*, const Stop&, TileStats&) const override;
 
  private:
-  struct Work;
-  vec3 camera_radiance(const Work&, const Tile&, int i) const;
-  vec3 follow(const Work&, Surface surface, Bsdf bsdf, vec3 beta, int bounce) const;
-  vec3 first_segment_unoccluded(const Work&, const Surface&, const Bsdf&) const;
+  struct Wave;
+  vec3 seen_directly(const Tile&, int i) const;
+  vec3 first_segment_unoccluded(const Surface&, const Bsdf&, Sampler&, TileStats&, Wave*, int pixel) const;
+  void follow(Wave& wave, int bounce, vec3* radiance, Sampler*, const Stop&, TileStats&) const;
+  int scatter(Wave& wave, int bounce, vec3* radiance, Sampler*, TileStats&) const;
 
   PathParams params_;
   const Scene* scene_ = nullptr;  ///< of the current pass
