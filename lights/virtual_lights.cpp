@@ -16,6 +16,8 @@ namespace {
 /// seed.
 constexpr uint64_t kSeedOffset = 0x9e6c63d0876a9a35u;
 constexpr uint32_t kChunk = 128;  ///< paths a task follows
+constexpr uint32_t kPilotPaths = 256;
+constexpr uint64_t kPilotSeed = 0x70696c6f74u;
 
 /// Which rays leave which light in this pass.
 struct Plan {
@@ -55,12 +57,12 @@ void share_paths(const Discrete& by_power, const std::vector<uint32_t>* names, u
   }
 }
 
-Plan make_plan(const Scene& scene, const VirtualLightOptions& options) {
+/// Begins about `count` paths.
+Plan make_plan(const Scene& scene, const VirtualLightOptions& options, uint32_t count) {
   Plan plan;
   const auto& lights = scene.lights();
   const Discrete& by_power = scene.light_selector().by_power();
   if (!(by_power.total() > 0)) return plan;
-  const auto count = static_cast<uint32_t>(std::max(1, options.lights / std::max(1, options.bounces)));
   if (options.distribution == VirtualLightOptions::paths) {
     share_paths(by_power, nullptr, count, options, &plan.paths);
     return plan;
@@ -153,6 +155,30 @@ void follow_path(const Scene& scene, EmissionSample ray, uint32_t primary, int b
   }
 }
 
+/// Follows the plan's paths numbered [first, end).
+void follow_paths(const Scene& scene, const Plan& plan, const VirtualLightOptions& options, uint32_t first,
+                  uint32_t end, VirtualLightSet* out) {
+  for (uint32_t j = first; j < end; ++j) {
+    uint32_t light = 0;
+    Sampler sampler;
+    const EmissionSample ray = begin_path(scene, plan, options, j, &light, &sampler);
+    follow_path(scene, ray, light, options.bounces, sampler, out);
+  }
+}
+
+/// How many paths leave about `options.lights` lights: by a pilot of its own random numbers, the same whatever the
+/// seed and pass, so that the set's expectation does not depend on its own outcome.
+uint32_t paths_wanted(const Scene& scene, VirtualLightOptions options) {
+  const auto lights = static_cast<double>(options.lights);
+  options.seed = kPilotSeed, options.pass = 0;
+  const Plan plan = make_plan(scene, options, kPilotPaths);
+  VirtualLightSet pilot;
+  follow_paths(scene, plan, options, 0, plan.size(), &pilot);
+  // Where next to nothing is stored, not more than 64 paths are begun for each light asked for.
+  const double stored = static_cast<double>(pilot.lights.size()) / std::max(1u, plan.size());
+  return static_cast<uint32_t>(std::clamp(std::round(lights / std::max(stored, 1.0 / 64)), 1.0, 4e9));
+}
+
 std::string missed_warning(const Scene& scene) {
   std::string names;
   size_t listed = 0, lit = 0;
@@ -173,7 +199,7 @@ VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOption
                                     const Stop& stop) {
   VirtualLightSet set;
   for (const auto& light : scene.lights()) set.emitted_power += light->power();
-  const Plan plan = make_plan(scene, options);
+  const Plan plan = make_plan(scene, options, paths_wanted(scene, options));
   const auto strongest =
       std::max_element(plan.grids.begin(), plan.grids.end(),
                        [](const auto& a, const auto& b) { return a.cells.cells() < b.cells.cells(); });
@@ -185,12 +211,7 @@ VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOption
   tbb::parallel_for(size_t{0}, parts.size(), [&](size_t part) {
     if (stop()) return;
     const auto first = static_cast<uint32_t>(part) * kChunk, end = std::min(plan.size(), first + kChunk);
-    for (uint32_t j = first; j < end; ++j) {
-      uint32_t light = 0;
-      Sampler sampler;
-      const EmissionSample ray = begin_path(scene, plan, options, j, &light, &sampler);
-      follow_path(scene, ray, light, options.bounces, sampler, &parts[part]);
-    }
+    follow_paths(scene, plan, options, first, end, &parts[part]);
   });
   size_t count = 0;
   for (const VirtualLightSet& part : parts) count += part.lights.size();

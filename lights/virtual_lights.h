@@ -41,9 +41,10 @@ struct VirtualLightOptions {
   /// from every light.
   enum Distribution { grid, paths };
 
-  int lights =
-      400;  ///< at most this many are stored, all bounces together; a grid takes the nearest rectangle
-  int bounces = 1;  ///< generations; lights/bounces paths are begun
+  /// Lights stored, all bounces together. The number of paths that leaves about as many is found by a pilot; a grid
+  /// takes the nearest rectangle.
+  int lights = 400;
+  int bounces = 1;  ///< generations
   Distribution distribution = grid;
   uint64_t seed = 0;
   uint32_t pass = 0;
