@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -55,6 +57,28 @@ TEST(scene_loader, the_least_scene_there_is) {
   EXPECT_EQ(settings.passes, 0);
   EXPECT_TRUE(noted(scene, "no lights"));
   EXPECT_FALSE(scene.intersect({0, 0, 9}, {0, 0, -1}).found());
+}
+
+TEST(scene_loader, every_bundled_scene_loads_or_asks_for_the_data_folder) {
+  const char* before = std::getenv("ZONAL_DATA");
+  const std::string kept = before ? before : "";
+  unsetenv("ZONAL_DATA");
+  size_t loaded = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(std::string(ZONAL_SOURCE_DIR) + "/scenes")) {
+    const std::string file = entry.path().string();
+    if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
+    if (file.find("/sweeps/") != std::string::npos) continue;  // those are comparisons
+    try {
+      const Scene scene = load_scene(file);
+      for (const std::string& note : scene.notes()) ADD_FAILURE() << file << ": " << note;
+      ++loaded;
+    } catch (const SceneError& error) {
+      EXPECT_NE(std::string(error.what()).find("ZONAL_DATA is not set"), std::string::npos) << error.what();
+    }
+  }
+  if (before) setenv("ZONAL_DATA", kept.c_str(), 1);
+  EXPECT_GE(loaded, 5u);  // cornell, atrium and the three analytic ones at least
 }
 
 TEST(scene_loader, a_camera_inside_a_closed_box_is_fine) {
