@@ -138,8 +138,10 @@ TEST_F(Gltf, emission_is_the_factor_times_the_mean_of_the_texture) {
 TEST_F(Gltf, lights_can_be_left_out_and_units_scale_places_but_not_intensities) {
   const std::string file =
       folder.write("scene.gltf", GltfScene(picture, false, kPlain).gltf("red_over_blue.png"));
-  EXPECT_TRUE(import_mesh(file, {.lights = false}).lights.empty());
-  const ImportedFile f = import_mesh(file, {.metres_per_unit = 0.1f});
+  ImportOptions dark, small;
+  dark.lights = false, small.metres_per_unit = 0.1f;
+  EXPECT_TRUE(import_mesh(file, dark).lights.empty());
+  const ImportedFile f = import_mesh(file, small);
   EXPECT_LT(length(dynamic_cast<const PointLight&>(*f.lights[0]).position - vec3(0.4f, 0.5f, 0.6f)), 1e-6f);
   EXPECT_EQ(dynamic_cast<const PointLight&>(*f.lights[0]).intensity, vec3(8, 4, 2));
   EXPECT_LT(length(f.cameras[0].position - vec3(0, 0.1f, 0.5f)), 1e-6f);
