@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <assimp/Importer.hpp>
+#include <string_view>
 
 #include "core/assimp_types.h"
 
@@ -31,6 +33,21 @@ vec3 direction(const mat4& m, const aiVector3D& d, vec3 otherwise) {
   return length > 0 && std::isfinite(length) ? turned / length : otherwise;
 }
 
+/// Undoes what Assimp's glTF reader makes of the vertical angle. Its header promises half the horizontal
+/// angle; 5.2 stores the vertical one times the aspect ratio, 5.4 the whole horizontal one. Which it is, a
+/// camera of one radian tells.
+float vertical_angle(float stored, float aspect) {
+  static const bool is_product = [] {
+    const std::string_view probe =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"camera":0}],"cameras":[)"
+        R"({"type":"perspective","perspective":{"yfov":1,"aspectRatio":2,"znear":0.1}}]})";
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFileFromMemory(probe.data(), probe.size(), 0, "gltf");
+    return scene && scene->mNumCameras == 1 && std::abs(scene->mCameras[0]->mHorizontalFOV - 2) < 1e-3f;
+  }();
+  return is_product ? stored / aspect : 2 * std::atan(std::tan(0.5f * stored) / aspect);
+}
+
 }  // namespace
 
 void import_cameras(const aiScene& scene, const mat4& to_world, ImportedFile& result) {
@@ -45,10 +62,9 @@ void import_cameras(const aiScene& scene, const mat4& to_world, ImportedFile& re
     // Looking straight along "up": any sideways direction will do.
     camera.right = glm::length(right) > 1e-6f ? glm::normalize(right) : Frame(camera.forward).x;
     camera.up = glm::cross(camera.right, camera.forward);
-    // Assimp's header promises half the horizontal angle; its glTF reader stores glTF's whole vertical angle
-    // times the aspect ratio, or times 1 where the file has none. gltf_import_test.cpp holds it to that.
+    // The angle was made with the aspect ratio, or with 1 where the file has none.
     const float aspect = source.mAspect > 0 ? source.mAspect : 1;
-    const float fov = source.mHorizontalFOV / aspect;
+    const float fov = vertical_angle(source.mHorizontalFOV, aspect);
     if (fov > 0 && fov < kPi) camera.vertical_fov = fov;
     if (source.mAspect > 0)
       camera.width = int(std::clamp(std::round(camera.height * aspect), 1.0f, 16384.0f));
