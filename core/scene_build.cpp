@@ -115,6 +115,8 @@ Scene::Scene(SceneParts parts) : impl_(std::make_unique<Impl>()) {
   impl_->device = rtcNewDevice(nullptr);
   if (!impl_->device) throw SceneError("Embree could not start on this machine");
   impl_->scene = impl_->build(false);
+  // Coated materials make their albedo tables when first asked: that is loading, not the first pass.
+  for (const auto& material : impl_->materials) material->at(vec2(0));
   std::vector<const Light*> lights;
   for (const auto& light : impl_->lights) {
     light->set_scene_bounds(impl_->bounds);

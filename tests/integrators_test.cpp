@@ -26,6 +26,7 @@ void expect_sound_render(const Scene& scene, const IntegratorRow& row, const std
 struct Hard {
   const char *name, *text;
 };
+void PrintTo(const Hard& hard, std::ostream* out) { *out << hard.name; }
 
 const Hard kHardScenes[] = {
     {"nothing", R"({"camera": {"position": [0,0,0], "look_at": [0,0,-1]}})"},

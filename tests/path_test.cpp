@@ -174,8 +174,7 @@ TEST(Path, bounces_asked_for_apart_add_up_to_the_whole) {
 }
 
 TEST(Path, without_anything_in_the_way_occlusion_makes_no_difference) {
-  // An empty convex box seen from inside: the light hangs outside the walls' lines of sight only as a black ball, which
-  // is put behind the camera's walls by making it a point.
+  // An empty convex box seen from inside, lit by a point: no wall hides another.
   const Scene scene = test::scene_from(R"({
     "camera": {"position": [0, 1, 1.9], "look_at": [0, 0.6, 0], "vertical_fov": 50, "resolution": [8, 8]},
     "materials": [{"name": "wall", "type": "lambert", "albedo": 0.5}],
@@ -198,7 +197,7 @@ TEST(Path, a_shadowed_floor_is_lit_without_direct_occlusion) {
   EXPECT_EQ(dark.rgb(1, 1), vec3(0));
   const Image lit = test::render_with(
       scene, "path", {.settings = R"({"max_bounces": 0, "direct_occlusion": "none"})", .width = 3, .height = 3});
-  EXPECT_NEAR(lit.rgb(1, 1).y, 0.5 / kPiD * 4 / 4, 2e-3);  // rho/pi I/h^2 under the light; the pixel looks 0.0 m off
+  EXPECT_NEAR(lit.rgb(1, 1).y, 0.5 / kPiD * 4 / 4, 2e-3);  // rho/pi I/h^2 under the light; the pixel's centre looks there to within its own size
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// What several test files share: scenes from text, pictures from a method's name, and statistics that decide.
 
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <string>
 
 #include "core/render.h"
@@ -38,3 +39,8 @@ double t_test_p(const Estimate& a, const Estimate& b);
 Scene bundled_scene(const std::string& name);
 
 }  // namespace zonal::test
+
+namespace zonal {
+/// How GoogleTest names a row in its reports.
+inline void PrintTo(const IntegratorRow& row, std::ostream* out) { *out << row.name; }
+}  // namespace zonal

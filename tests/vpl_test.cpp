@@ -44,6 +44,7 @@ std::vector<test::Estimate> estimates(const Scene& scene, const std::string& met
 struct Transport {
   std::string name, scene, vpl, path;
 };
+void PrintTo(const Transport& t, std::ostream* out) { *out << t.name; }
 
 class VplTendsToPath : public testing::TestWithParam<Transport> {};
 
@@ -103,14 +104,13 @@ TEST(Vpl, the_clamp_takes_the_energy_it_says) {
   EXPECT_EQ(free_stats.clamped_energy, 0);
 }
 
-TEST(Vpl, a_light_shines_on_no_more_than_its_flux_allows) {
-  // Indirect light in a furnace box: every wall point of a closed box with albedo rho receives what it sends, so one
-  // generation of virtual lights from an isotropic source carries rho times the source's flux.
+TEST(Vpl, the_first_generation_carries_the_flux_of_the_lamp) {
+  // Nothing escapes a closed box: what its first generation receives is what the lamp emits.
   const Scene scene = test::scene_from(room(kDiffuse, kPoint));
   const VirtualLightSet set = make_virtual_lights(scene, {.lights = 600, .bounces = 1, .seed = 4}, Stop{});
   double flux = 0;
   for (const VirtualLight& light : set.lights) flux += light.power.y;
-  EXPECT_NEAR(flux, 2 * 4 * 3.14159265, 0.01 * flux);  // intensity times 4 pi: nothing escapes a closed box
+  EXPECT_NEAR(flux, 2 * 4 * 3.14159265, 0.01 * flux);  // intensity times 4 pi
 }
 
 TEST(VplKernel, yuksel_is_the_published_formula_and_stays_finite) {
