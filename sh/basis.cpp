@@ -14,20 +14,21 @@ namespace zonal::sh {
 
 namespace {
 
-/// A direction whose z is held in two numbers. A float vector is unit only to 6e-8, and near a pole, where
-/// dY/dz reaches l^2/2 times the normalisation, that alone would cost 1e-5 at 20 bands. What is evaluated is
-/// Y(d/|d|).
+/// A unit direction with u = 1 - |z| known to its own rounding. A float vector is unit only to 6e-8; near a
+/// pole, where dY/dz reaches l^2/2 times the normalisation, that alone would cost 1e-5 at 20 bands. What is
+/// evaluated is Y(d/|d|).
 template <class T>
 struct Direction {
-  T x, y, z, z_low;  ///< z + z_low
+  T x, y, z, u, sign;
 };
 
 template <class T>
 Direction<T> direction(const Vec3<T>& d) {
-  // |d|^2 - 1, accurate to rounding of 1 - z^2: factors, because z^2 - 1 would cancel.
-  T excess = (d.z - 1) * (d.z + 1) + (d.x * d.x + d.y * d.y);
-  T scale = -excess / (1 + excess + std::sqrt(1 + excess));  // 1/|d| - 1
-  return {d.x + d.x * scale, d.y + d.y * scale, d.z, d.z * scale};
+  // |d|^2 - 1, accurate to the rounding of 1 - z^2: factors, because z^2 - 1 would cancel.
+  const T excess = (d.z - 1) * (d.z + 1) + (d.x * d.x + d.y * d.y);
+  const T scale = -excess / (1 + excess + std::sqrt(1 + excess));  // 1/|d| - 1
+  const T x = d.x + d.x * scale, y = d.y + d.y * scale, z = d.z + d.z * scale;
+  return {x, y, z, (x * x + y * y) / (1 + std::abs(z)), std::copysign(T(1), z)};
 }
 
 /// Powers of x+iy, from exponent -2 (as 0) so that derivatives need no special cases.
@@ -46,20 +47,20 @@ struct Powers {
   T im(int m) const { return s_[m + 2]; }
 };
 
-/// q[l] = q_l^m(z) for l = m..bands-1, and zero at l < m.
+/// p[l] = sign(z)^{l-m} p_l^m(|z|) for l = m..bands-1, tables.h, and zero at l < m.
 template <class T>
-void legendre_column(int bands, int m, const Direction<T>& d, T* q) {
-  const auto& table = tables<T>();
-  const auto* step = table.column(m);
-  std::fill(q, q + std::min(m, bands), T(0));
+void legendre_column(int bands, int m, const Direction<T>& d, T* p) {
+  std::fill(p, p + std::min(m, bands), T(0));
   if (m >= bands) return;
-  T before = 0, last = table.start[m];
-  q[m] = last;
+  const Step<T>* step = tables<T>().column(m);
+  T value = 1, change = 0, sign = 1;
+  p[m] = 1;
   for (int l = m + 1; l < bands; ++l) {
     ++step;
-    T next = step->rise * (d.z * last + (d.z_low * last - step->fall * before));
-    before = last;
-    q[l] = last = next;
+    change = step->fall * change - step->rise * value;
+    value += d.u * change;
+    sign *= d.sign;
+    p[l] = value * sign;
   }
 }
 
@@ -92,12 +93,14 @@ template <class T>
 void evaluate(int bands, const Vec3<T>& unit, T* Y) {
   const Direction<T> d = direction(unit);
   const Powers<T> powers(bands, d.x, d.y);
-  T q[kMaxBands];
+  T p[kMaxBands];
   for (int m = 0; m < bands; ++m) {
-    legendre_column(bands, m, d, q);
+    legendre_column(bands, m, d, p);
+    const Step<T>* column = tables<T>().column(m);
     for (int l = m; l < bands; ++l) {
-      Y[index(l, -m)] = q[l] * powers.im(m);
-      Y[index(l, m)] = q[l] * powers.re(m);
+      const T q = column[l - m].norm * p[l];
+      Y[index(l, -m)] = q * powers.im(m);
+      Y[index(l, m)] = q * powers.re(m);
     }
   }
 }
@@ -113,14 +116,14 @@ void evaluate_gradient(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient) {
   const Powers<T> powers(bands, d.x, d.y);
   const T rho2 = d.x * d.x + d.y * d.y;
   T columns[2][kMaxBands];
-  T *q = columns[0], *q_up = columns[1];
-  legendre_column(bands, 0, d, q);
-  for (int m = 0; m < bands; ++m, std::swap(q, q_up)) {
-    legendre_column(bands, m + 1, d, q_up);
-    const auto* step = tables<T>().column(m);
+  T *p = columns[0], *p1 = columns[1];
+  legendre_column(bands, 0, d, p);
+  for (int m = 0; m < bands; ++m, std::swap(p, p1)) {
+    legendre_column(bands, m + 1, d, p1);
+    const Step<T>* column = tables<T>().column(m);
     const T c = powers.re(m), s = powers.im(m), c1 = powers.re(m - 1), s1 = powers.im(m - 1);
     for (int l = m; l < bands; ++l) {
-      const T f = q[l], df = -step[l - m].slope * q_up[l];
+      const T f = column[l - m].norm * p[l], df = column[l - m].slope * p1[l];
       const T radial = m * f + d.z * df, up = (rho2 * df - m * d.z * f) * inverse, mf = m * f * inverse;
       const T rx = radial * d.x * inverse, ry = radial * d.y * inverse;
       Y[index(l, -m)] = f * s;
@@ -141,16 +144,15 @@ void evaluate_hessian(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient, Hess
   const Powers<T> powers(bands, d.x, d.y);
   const T x = d.x, y = d.y, z = d.z, rho2 = x * x + y * y;
   T columns[3][kMaxBands];
-  T *q = columns[0], *q1 = columns[1], *q2 = columns[2];
-  legendre_column(bands, 0, d, q);
-  legendre_column(bands, 1, d, q1);
+  T *p = columns[0], *p1 = columns[1], *p2 = columns[2];
+  legendre_column(bands, 0, d, p);
+  legendre_column(bands, 1, d, p1);
   for (int m = 0; m < bands; ++m) {
-    legendre_column(bands, m + 2, d, q2);
-    const auto* step = tables<T>().column(m);
-    const auto* step1 = m + 1 < bands ? tables<T>().column(m + 1) : nullptr;
+    legendre_column(bands, m + 2, d, p2);
+    const Step<T>* column = tables<T>().column(m);
     for (int l = m; l < bands; ++l) {
-      const T f = q[l], df = -step[l - m].slope * q1[l];
-      const T ddf = l > m ? step[l - m].slope * step1[l - m - 1].slope * q2[l] : T(0);
+      const Step<T>& step = column[l - m];
+      const T f = step.norm * p[l], df = step.slope * p1[l], ddf = step.curve * p2[l];
       const T degree = T(l) * T(l + 1);
       const T radial = m * f + z * df, up = rho2 * df - m * z * f;
       const T squares = T(m) * (m + 2) * f + (2 * m + 3) * z * df + z * z * ddf;
@@ -177,8 +179,8 @@ void evaluate_hessian(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient, Hess
       write(index(l, m), powers.re(m), powers.re(m - 1), -powers.im(m - 1), powers.re(m - 2),
             -powers.im(m - 2));
     }
-    T* freed = q;
-    q = q1, q1 = q2, q2 = freed;
+    T* freed = p;
+    p = p1, p1 = p2, p2 = freed;
   }
 }
 

@@ -7,34 +7,24 @@ namespace zonal::sh {
 
 namespace {
 
-double rise(int l, int m) {
-  return std::sqrt((4.0 * l * l - 1.0) / (double(l - m) * double(l + m)));
-}
-
 template <class T>
 Tables<T> make_tables() {
-  Tables<T> t;
-  t.steps.resize(kMaxBands * (kMaxBands + 1) / 2);
+  Tables<T> t{};
   double start = std::sqrt(0.25 / std::numbers::pi);
   for (int m = 0; m < kMaxBands; ++m) {
     // X_m^m = -sqrt((2m+1)/(2m)) X_{m-1}^{m-1} with the square roots folded in, never (2m-1)!!; sqrt(2)
     // enters at m = 1.
     if (m > 0) start *= -std::sqrt((m == 1 ? 2.0 : 1.0) * (2.0 * m + 1.0) / (2.0 * m));
-    t.start[m] = T(start);
-    auto* column = const_cast<typename Tables<T>::Step*>(t.column(m));
-    double before = 0, last = 1;  // q_{l-2} and q_{l-1} at the pole, over start
+    double norm = start;
     for (int l = m; l < kMaxBands; ++l) {
-      auto& step = column[l - m];
-      step.rise = l > m ? T(rise(l, m)) : T(0);
-      if (l > m + 1) {
-        // The pole is where rounded constants hurt most: `fall` takes up the rounding of `rise` there.
-        const double next = rise(l, m) * (last - before / rise(l - 1, m));
-        step.fall = T((last - next / double(step.rise)) / before);
-        before = last, last = next;
-      } else if (l == m + 1) {
-        before = 1, last = rise(l, m);
-      }
-      step.slope = T(std::sqrt(double(l + m + 1) * double(l - m) * (m == 0 ? 0.5 : 1.0)));
+      const double below = l - m, above = l + m;
+      if (l > m) norm *= std::sqrt((2 * l + 1.0) / (2 * l - 1.0) * (above / below));
+      // At the pole the derivative of the Legendre function's m-th derivative is (l-m)(l+m+1) / (2(m+1))
+      // times itself.
+      const double slope = norm * below * (above + 1) / (2 * (m + 1));
+      const double curve = slope * (below - 1) * (above + 2) / (2 * (m + 2));
+      t.steps[t.offset(m) + l - m] = {l > m ? T((2 * l - 1) / above) : T(0),
+                                      l > m ? T((below - 1) / above) : T(0), T(norm), T(slope), T(curve)};
     }
   }
   return t;
