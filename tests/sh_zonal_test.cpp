@@ -1,0 +1,328 @@
+// Zonal lights against the golden vectors, quadrature, finite differences and their limits.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <vector>
+
+#include "sh/disk_light.h"
+#include "sh/ggx_lobe.h"
+#include "sh/simple_lights.h"
+#include "sh/sphere_light.h"
+
+namespace zonal::sh {
+namespace {
+
+using nlohmann::json;
+using dvec3 = Vec3<double>;
+constexpr double kPi = 3.14159265358979323846;
+
+json golden(const std::string& name) {
+  std::ifstream file(std::string(ZONAL_SOURCE_DIR) + "/tests/golden/" + name + ".json");
+  EXPECT_TRUE(file) << name;
+  return json::parse(file);
+}
+
+template <class T = double>
+Vec3<T> vec(const json& j) {
+  return Vec3<T>(T(j[0].get<double>()), T(j[1].get<double>()), T(j[2].get<double>()));
+}
+
+template <class A, class B>
+double worst_of_largest(const A& got, const B& truth, int n) {
+  double largest = 0, worst = 0;
+  for (int i = 0; i < n; ++i) {
+    largest = std::max(largest, std::abs(double(truth[i])));
+    worst = std::max(worst, std::abs(double(got[i]) - double(truth[i])));
+    if (!std::isfinite(double(got[i]))) return INFINITY;
+  }
+  return largest > 0 ? worst / largest : worst;
+}
+
+std::vector<double> flat(const json& rows) {
+  std::vector<double> v;
+  for (const json& row : rows) {
+    for (const json& x : row) v.push_back(x.get<double>());
+  }
+  return v;
+}
+
+// Coefficients: rounding of 30 recurrence steps. Derivatives: h = sqrt((d-r)(d+r)) is exact to rounding, so
+// they are as good.
+TEST(ShZonal, sphere_matches_golden_zonal_coefficients_and_derivatives) {
+  for (const json& c : golden("zh_sphere")["cases"]) {
+    double z[30], dz[30];
+    sphere_light_zonal<double>(30, c["d"].get<double>(), c["r"].get<double>(), z, dz);
+    EXPECT_LT(worst_of_largest(z, c["zh"].get<std::vector<double>>(), 30), 1e-13) << c["ratio"];
+    EXPECT_LT(worst_of_largest(dz, c["dzh_dd"].get<std::vector<double>>(), 30), 1e-13) << c["ratio"];
+  }
+}
+
+// Float: the truth is the double result at the rounded inputs (tested above against 50 digits).
+TEST(ShZonal, float_sphere_is_accurate_from_contact_to_a_point) {
+  for (const double ratio : {0.999, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8}) {
+    for (const float d : {0.013f, 1.0f, 777.7f}) {
+      for (const int bands : {9, 30, 101}) {
+        const float r = float(ratio * d);
+        float z[101];
+        double truth[101];
+        sphere_light_zonal(bands, d, r, z);
+        sphere_light_zonal(bands, double(d), double(r), truth);
+        EXPECT_LT(worst_of_largest(z, truth, bands), 2e-6) << ratio << " " << d << " " << bands;
+      }
+    }
+  }
+}
+
+TEST(ShZonal, sphere_and_disk_match_golden_sh_coefficients_and_gradients) {
+  for (const json& c : golden("zh_sphere")["sh_cases"]) {
+    const bool disk = c["kind"] == "disk";
+    const dvec3 x = vec(c["x"]), y = vec(c["y"]);
+    const double r = c["r"];
+    double L[81];
+    dvec3 G[81];
+    disk ? disk_light_gradient(9, x, y, r, L, G) : sphere_light_gradient(9, x, y, r, L, G);
+    EXPECT_LT(worst_of_largest(L, c["coeffs"].get<std::vector<double>>(), 81), 1e-13) << c["kind"] << r;
+    EXPECT_LT(worst_of_largest(&G[0].x, flat(c["grad_x"]), 243), 1e-12) << c["kind"] << r;
+
+    // Float, at the rounded inputs.
+    const Vec3<float> xf(x), yf(y);
+    float Lf[81];
+    Vec3<float> Gf[81];
+    disk ? disk_light_gradient(9, xf, yf, float(r), Lf, Gf)
+         : sphere_light_gradient(9, xf, yf, float(r), Lf, Gf);
+    disk ? disk_light_gradient(9, dvec3(xf), dvec3(yf), double(float(r)), L, G)
+         : sphere_light_gradient(9, dvec3(xf), dvec3(yf), double(float(r)), L, G);
+    EXPECT_LT(worst_of_largest(Lf, L, 81), 2e-6) << c["kind"] << r;
+    EXPECT_LT(worst_of_largest(&Gf[0].x, &G[0].x, 243), 4e-6) << c["kind"] << r;
+  }
+}
+
+// Central differences with step h: error h^2 f'''/6 + eps f/h, 1e-8 of the largest at h = 1e-5.
+TEST(ShZonal, gradient_and_hessian_are_the_derivatives) {
+  const int bands = 12, n = count(bands);
+  const double h = 1e-5;
+  for (const bool disk : {false, true}) {
+    const dvec3 x(0.2, -0.4, 0.1), y(0.9, 0.5, -1.2);
+    const auto at = [&](dvec3 p, std::vector<double>& L, std::vector<dvec3>& G,
+                        std::vector<Hessian<double>>& H) {
+      L.resize(n), G.resize(n), H.resize(n);
+      disk ? disk_light_hessian(bands, p, y, 0.7, L.data(), G.data(), H.data())
+           : sphere_light_hessian(bands, p, y, 0.7, L.data(), G.data(), H.data());
+    };
+    std::vector<double> L, a, b;
+    std::vector<dvec3> G, ga, gb;
+    std::vector<Hessian<double>> H, t;
+    at(x, L, G, H);
+    double worst_g = 0, worst_h = 0;
+    for (int k = 0; k < 3; ++k) {
+      dvec3 e(0);
+      e[k] = h;
+      at(x + e, a, ga, t), at(x - e, b, gb, t);
+      for (int i = 0; i < n; ++i) {
+        const dvec3 row = k == 0   ? dvec3(H[i].xx, H[i].xy, H[i].xz)
+                          : k == 1 ? dvec3(H[i].xy, H[i].yy, H[i].yz)
+                                   : dvec3(H[i].xz, H[i].yz, H[i].zz);
+        worst_g = std::max(worst_g, std::abs((a[i] - b[i]) / (2 * h) - G[i][k]));
+        worst_h = std::max(worst_h, glm::length((ga[i] - gb[i]) / (2 * h) - row));
+      }
+    }
+    EXPECT_LT(worst_g, 1e-7);
+    EXPECT_LT(worst_h, 1e-6);
+  }
+}
+
+TEST(ShZonal, second_derivative_along_the_distance) {
+  const double h = 1e-5;
+  double z[20], a[20], b[20], d2[20];
+  for (const bool disk : {false, true}) {
+    const auto f = disk ? disk_light_zonal<double> : sphere_light_zonal<double>;
+    double t[20];
+    f(20, 1.3, 0.6, z, t, d2);
+    f(20, 1.3 + h, 0.6, z, a, nullptr), f(20, 1.3 - h, 0.6, z, b, nullptr);
+    for (int l = 0; l < 20; ++l) EXPECT_NEAR((a[l] - b[l]) / (2 * h), d2[l], 1e-6) << l;
+  }
+}
+
+// Any cap, beyond the hemisphere too, against Simpson's rule on Eq. 3.4: error (l h)^4 z/180, 5e-10 at l
+// = 15.
+TEST(ShZonal, cap_of_any_half_angle_matches_quadrature) {
+  for (const double a : {0.01, 0.7, kPi / 2, 2.0, 3.0, kPi}) {
+    double z[16];
+    cap_zonal(16, cap_from_half_angle(a), z);
+    for (int l = 0; l < 16; ++l) {
+      const int n = 2000;
+      double sum = 0;
+      for (int i = 0; i <= n; ++i) {
+        const double theta = a * i / n;
+        sum += (i == 0 || i == n ? 1 : i % 2 ? 4 : 2) * std::legendre(l, std::cos(theta)) * std::sin(theta);
+      }
+      const double truth = 2 * kPi * std::sqrt((2 * l + 1) / (4 * kPi)) * sum * a / n / 3;
+      EXPECT_NEAR(z[l], truth, 1e-9) << a << " " << l;
+    }
+  }
+}
+
+TEST(ShZonal, cap_by_solid_angle_is_cap_by_half_angle) {
+  double a[12], b[12];
+  cap_zonal(12, cap_from_half_angle(1.1), a);
+  cap_zonal(12, cap_from_solid_angle(2 * kPi * (1 - std::cos(1.1))), b);
+  EXPECT_LT(worst_of_largest(a, b, 12), 1e-14);
+}
+
+TEST(ShZonal, batch_equals_single) {
+  const int n = 13, bands = 20;
+  std::vector<float> t(n), s2(n), z(bands * n), x(n), y(n), w(n), f(count(bands) * n);
+  for (int i = 0; i < n; ++i) {
+    const Cap<float> cap = cap_from_half_angle(0.24f * float(i) + 0.001f);
+    t[i] = cap.versine, s2[i] = cap.sine2;
+    const Vec3<float> axis = glm::normalize(Vec3<float>(i - 6.0f, 0.3f * i, 5.0f - i));
+    x[i] = axis.x, y[i] = axis.y, w[i] = axis.z;
+  }
+  cap_zonal_batch(bands, n, t.data(), s2.data(), z.data());
+  rotate_zonal_batch(bands, n, z.data(), x.data(), y.data(), w.data(), f.data());
+  for (int i = 0; i < n; ++i) {
+    float one[20], turned[400], column[400];
+    cap_zonal(bands, Cap<float>{t[i], s2[i]}, one);
+    rotate_zonal(bands, one, Vec3<float>(x[i], y[i], w[i]), turned);
+    for (int l = 0; l < bands; ++l) EXPECT_NEAR(one[l], z[l * n + i], 1e-5) << l << " " << i;
+    for (int k = 0; k < count(bands); ++k) column[k] = f[k * n + i];
+    EXPECT_LT(worst_of_largest(column, turned, count(bands)), 5e-6) << i;
+  }
+}
+
+// A sphere that shrinks becomes a point light of intensity pi r^2: z_l -> pi r^2/d^2 Y_l0, relative error (l
+// r/d)^2.
+TEST(ShZonal, small_sphere_is_a_point_light_and_small_disk_too) {
+  const dvec3 x(0.1, 0.2, 0.3), y(2, -1, 1.5);
+  const double r = 1e-6;
+  double sphere[100], disk[100], point[100];
+  sphere_light(10, x, y, r, sphere), disk_light(10, x, y, r, disk), point_light(10, x, y, kPi * r * r, point);
+  EXPECT_LT(worst_of_largest(sphere, point, 100), 1e-9);
+  EXPECT_LT(worst_of_largest(disk, point, 100), 1e-9);
+}
+
+TEST(ShZonal, inside_the_sphere_is_the_hemisphere_with_a_still_size) {
+  const dvec3 x(0.1, 0, 0), y(0.5, 0, 0);
+  double z[9], dz[9], d2z[9], hemisphere[9];
+  for (const double d : {1.0, 0.5, 1e-30}) {
+    sphere_light_zonal(9, d, 1.0, z, dz, d2z);
+    cap_zonal(9, cap_from_half_angle(kPi / 2), hemisphere);
+    for (int l = 0; l < 9; ++l) {
+      EXPECT_NEAR(z[l], hemisphere[l], 1e-14);
+      EXPECT_EQ(dz[l], 0);
+      EXPECT_EQ(d2z[l], 0);
+    }
+  }
+  double L[81];
+  dvec3 G[81];
+  Hessian<double> H[81];
+  for (const dvec3 p : {x, y}) {
+    sphere_light_hessian(9, p, y, 1.0, L, G, H);
+    for (int i = 0; i < 81; ++i)
+      EXPECT_TRUE(std::isfinite(L[i] + G[i].x + G[i].y + G[i].z + H[i].xx + H[i].yz));
+  }
+  EXPECT_NEAR(L[0], std::sqrt(kPi), 1e-15);
+}
+
+template <class T>
+void expect_finite_at_extremes() {
+  for (const double size : {1e-30, 1e-10, 1.0, 1e10, 1e30}) {
+    for (const double ratio : {1e-30, 1e-8, 0.5, 1 - 1e-7, 1.0, 3.0, 1e20}) {
+      const Vec3<T> x(0), y(T(0.6 * size), T(-0.64 * size), T(0.48 * size));
+      const T r = T(std::min(ratio * size, 1e37));
+      if (!(r > 0)) continue;
+      T L[100];
+      Vec3<T> G[100];
+      for (const bool disk : {false, true}) {
+        disk ? disk_light_gradient(10, x, y, r, L, G) : sphere_light_gradient(10, x, y, r, L, G);
+        for (int i = 0; i < 100; ++i) {
+          EXPECT_FALSE(std::isnan(L[i] + G[i].x + G[i].y + G[i].z)) << size << " " << ratio << " " << disk;
+        }
+      }
+      point_light(10, x, y, T(1), L, G);
+      for (int i = 0; i < 100; ++i) EXPECT_FALSE(std::isnan(L[i] + G[i].x)) << size;
+    }
+  }
+}
+TEST(ShZonal, extreme_inputs_never_give_nan) {
+  expect_finite_at_extremes<float>();
+  expect_finite_at_extremes<double>();
+}
+
+TEST(ShZonal, ggx_lobes_match_golden) {
+  const json file = golden("ggx_zh");
+  for (const json& c : file["cases"]) {
+    for (const auto& [name, lobe] :
+         {std::pair{"ndf", GgxLobe::ndf}, std::pair{"ndf_cos", GgxLobe::ndf_cos},
+          std::pair{"reflect_normal_incidence", GgxLobe::reflect_normal_incidence}}) {
+      double z[30];
+      ggx_zonal(30, lobe, c["alpha"].get<double>(), z);
+      EXPECT_LT(worst_of_largest(z, c[name].get<std::vector<double>>(), 30), 1e-13) << c["alpha"] << name;
+    }
+  }
+}
+
+// z_0 of D cos is 1/sqrt(4pi) for every alpha. Derivatives: central differences, error h^2/alpha^2.
+TEST(ShZonal, sharp_ggx_lobes_keep_their_energy_and_derivative) {
+  for (const double alpha : {1e-6, 1e-3, 0.02, 0.3, 1.0}) {
+    double z[101], dz[101], a[101], b[101];
+    ggx_zonal(101, GgxLobe::ndf_cos, alpha, z, dz);
+    EXPECT_NEAR(z[0], 0.5 / std::sqrt(kPi), 1e-13) << alpha;
+    for (const GgxLobe lobe : {GgxLobe::ndf, GgxLobe::ndf_cos, GgxLobe::reflect_normal_incidence}) {
+      const double h = 1e-4 * alpha;
+      ggx_zonal(101, lobe, alpha, z, dz);
+      ggx_zonal(101, lobe, alpha + h, a), ggx_zonal(101, lobe, alpha - h, b);
+      for (int l = 0; l < 101; ++l)
+        EXPECT_NEAR((a[l] - b[l]) / (2 * h) * alpha, dz[l] * alpha, 1e-6) << alpha << " " << l;
+    }
+  }
+}
+
+TEST(ShZonal, attenuation_matches_golden) {
+  for (const json& c : golden("yuksel")["cases"]) {
+    const dvec3 w = vec(c["y"]) - vec(c["x"]);
+    const Attenuation<double> s = inverse_square(w), q = yuksel(w, c["r"].get<double>());
+    EXPECT_NEAR(q.value / c["attenuation"].get<double>(), 1, 1e-14);
+    EXPECT_NEAR(s.value / c["inv_sq"].get<double>(), 1, 2e-13);  // y - x rounds
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(q.gradient[k] / c["grad_x"][k].get<double>(), 1, 2e-13);
+      EXPECT_NEAR(s.gradient[k] / c["grad_x_inv_sq"][k].get<double>(), 1, 4e-13);
+    }
+  }
+}
+
+TEST(ShZonal, simple_lights_have_the_gradients_they_claim) {
+  const dvec3 x(0.2, -0.4, 0.1), y(0.9, 0.5, 1.2);
+  const double h = 1e-5;
+  SpotCone<double> cone{glm::normalize(dvec3(-0.5, -0.6, -1)), 0.999, 0.7};
+  for (int kind = 0; kind < 3; ++kind) {
+    const auto at = [&](dvec3 p, double* L, dvec3* G) {
+      if (kind == 0) point_light(8, p, y, 2.0, L, G);
+      if (kind == 1) point_light_yuksel(8, p, y, 2.0, 0.3, L, G);
+      if (kind == 2) spot_light(8, p, y, 2.0, cone, L, G);
+    };
+    double L[64], a[64], b[64];
+    dvec3 G[64];
+    at(x, L, G);
+    EXPECT_GT(L[0], 0.1);
+    for (int k = 0; k < 3; ++k) {
+      dvec3 e(0);
+      e[k] = h;
+      at(x + e, a, nullptr), at(x - e, b, nullptr);
+      for (int i = 0; i < 64; ++i) EXPECT_NEAR((a[i] - b[i]) / (2 * h), G[i][k], 1e-7) << kind;
+    }
+  }
+}
+
+TEST(ShZonal, directional_light_is_the_basis_against_its_travel) {
+  double L[16], Y[16];
+  const dvec3 d = glm::normalize(dvec3(1, 2, -3));
+  directional_light(4, d, 3.0, L);
+  evaluate(4, -d, Y);
+  for (int i = 0; i < 16; ++i) EXPECT_DOUBLE_EQ(L[i], 3 * Y[i]);
+}
+
+}  // namespace
+}  // namespace zonal::sh
