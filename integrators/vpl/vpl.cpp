@@ -98,12 +98,22 @@ void VplIntegrator::trace_lights(const Pass& pass, int count, const Stop& stop, 
   if (stats->warnings.empty()) stats->warnings = set_.warnings;
 }
 
-/// A timed render whose pass would take more than a tenth of the time gathers from fewer lights a pass: measured on
-/// four tiles spread over the picture, once.
+/// A timed render whose pass would take more than a tenth of the time gathers from fewer lights a pass, but not so few
+/// that gathering takes less of a pass than all the rest of it. Measured on four tiles spread over the picture, once.
 int VplIntegrator::lights_that_fit(const Pass& pass, const Stop& stop) {
-  const int probe = std::min(params_.lights, 64);
-  trace_lights(pass, probe, stop, nullptr);
+  trace_lights(pass, std::min(params_.lights, 64), stop, nullptr);
   if (set_.lights.empty()) return params_.lights;
+  const double with_lights = seconds_a_pass(pass, stop);
+  const auto count = static_cast<double>(set_.lights.size());
+  set_.lights.clear();
+  const double rest = seconds_a_pass(pass, stop);
+  const double per_light = std::max(with_lights - rest, 1e-3 * with_lights) / count;
+  const double fit = std::max(pass.budget_seconds / 10 - rest, rest) / per_light;
+  return static_cast<int>(std::clamp(fit, 1.0, static_cast<double>(params_.lights)));
+}
+
+/// How long shading the whole picture from the present lights will take.
+double VplIntegrator::seconds_a_pass(const Pass& pass, const Stop& stop) const {
   const Camera& camera = pass.camera;
   const auto start = Clock::now();
   Tile tile;
@@ -117,9 +127,7 @@ int VplIntegrator::lights_that_fit(const Pass& pass, const Stop& stop) {
     shade(tile, radiance.data(), samplers.data(), stop, ignored);
     pixels += tile.count;
   }
-  const double light_pixel = seconds_since(start) / (pixels * set_.lights.size());
-  const double per_light = light_pixel * camera.width * camera.height / pass.threads;
-  return std::clamp(static_cast<int>(pass.budget_seconds / 10 / per_light), 1, params_.lights);
+  return seconds_since(start) / pixels * camera.width * camera.height / pass.threads;
 }
 
 void VplIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStats& stats) {

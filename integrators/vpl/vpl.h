@@ -53,6 +53,7 @@ class VplIntegrator : public Integrator {
  private:
   void trace_lights(const Pass&, int count, const Stop&, PassStats*);
   int lights_that_fit(const Pass&, const Stop&);
+  double seconds_a_pass(const Pass&, const Stop&) const;
 
   VplParams params_;
   const Scene* scene_ = nullptr;
