@@ -79,6 +79,9 @@ struct DirectionLanes {
     u = (x * x + y * y) / (size + T(1));
     sign = z < 0 ? z * 0 - T(1) : z * 0 + T(1);
   }
+  /// With u known better than x and y tell.
+  DirectionLanes(V x_, V y_, V z_, V u_)
+      : x(x_), y(y_), z(z_), u(u_), sign(z_ < 0 ? z_ * 0 - T(1) : z_ * 0 + T(1)) {}
 };
 
 /// Calls f(l, m, X, dX, c, s, c1, s1) for every 0 <= m <= l < bands, m from the highest down, such that

@@ -1,0 +1,196 @@
+#include "sh/light_batch.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "sh/zonal_lanes.h"
+
+namespace zonal::sh {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Lights seen from x, one a lane.
+template <class T, int W>
+struct SeenLanes {
+  using V = Lanes<T, W>;
+  using D = Lanes<double, W>;
+  V x, y, z, u;                     ///< axis and 1 - |z|
+  V versine, sine2, dt, inverse_d;  ///< of the cap; dt/dd; 1/d
+
+  SeenLanes(LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first, int filled) {
+    const D wx = wide(lights.x + first, filled) - double(p.x),
+            wy = wide(lights.y + first, filled) - double(p.y),
+            wz = wide(lights.z + first, filled) - double(p.z);
+    D r = wide(lights.radius + first, filled);
+    const D d2 = wx * wx + wy * wy + wz * wz, r2 = r * r;
+    const D safe = d2 > 0 ? d2 : d2 * 0 + 1.0;
+    const D inverse = 1.0 / root(safe);
+    const D ax = wx * inverse, ay = wy * inverse, az = d2 > 0 ? wz * inverse : d2 * 0 + 1.0;
+    x = narrow(ax), y = narrow(ay), z = narrow(az);
+    u = narrow((ax * ax + ay * ay) / ((az < 0 ? -az : az) + 1.0));
+    inverse_d = narrow(inverse);
+    const V zero = x * 0;
+    if (shape == LightShape::sphere) {
+      const D h2 = d2 - r2;
+      // On or inside the sphere: the hemisphere, standing still.
+      const D cosine2 = h2 > 0 ? h2 * (inverse * inverse) : h2 * 0;
+      const V cosine = root(narrow(cosine2));
+      sine2 = h2_positive(h2, narrow(r2 * (inverse * inverse)), zero + T(1));
+      versine = sine2 / (cosine + T(1));
+      dt = h2_positive(h2, -sine2 * inverse_d / (cosine > 0 ? cosine : zero + T(1)), zero);
+    } else {
+      const D inverse_s2 = 1.0 / (d2 + r2);
+      sine2 = narrow(r2 * inverse_s2);
+      const D s2d2 = d2 * inverse_s2;
+      const V cosine = root(narrow(s2d2));
+      versine = sine2 / (cosine + T(1));
+      dt = -sine2 * root(narrow(inverse_s2));
+    }
+  }
+
+  template <class U>
+  static U root(U v) {
+    for (int k = 0; k < W; ++k) v[k] = std::sqrt(v[k]);
+    return v;
+  }
+  static V narrow(D v) { return __builtin_convertvector(v, V); }
+  static V h2_positive(D h2, V yes, V no) {
+    for (int k = 0; k < W; ++k) yes[k] = h2[k] > 0 ? yes[k] : no[k];
+    return yes;
+  }
+  static D wide(const T* p, int filled) { return __builtin_convertvector(load_lanes<T, W>(p, filled), D); }
+  DirectionLanes<T, V> direction() const { return {x, y, z, u}; }
+
+  /// gain[l] sign^l, and 2 pi P_l sign^l times dt if wanted.
+  void gains(int bands, V sign, V* gain, V* growth) const {
+    CapRecurrence<T, V> r(versine);
+    gain[0] = versine * T(2 * kPi);
+    if (growth) growth[0] = dt * T(2 * kPi);
+    V parity = sign, scale = sine2 * T(kPi);
+    for (int l = 1; l < bands; ++l) {
+      r.step_q(l);
+      gain[l] = scale * parity * r.q;
+      if (growth) {
+        r.step_p(l);
+        growth[l] = T(2 * kPi) * dt * parity * r.p;
+      }
+      parity *= sign;
+    }
+  }
+};
+
+template <class T, int W>
+void project_block(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
+                   T* L) {
+  using V = Lanes<T, W>;
+  const int filled = std::min(W, lights.count - first);
+  const SeenLanes<T, W> seen(shape, p, lights, first, filled);
+  const DirectionLanes<T, V> d = seen.direction();
+  V gain[kMaxBands];
+  seen.gains(bands, d.sign, gain, nullptr);
+  const size_t stride = lights.count;
+  T* out = L + first;
+  basis_lanes<T, W, false>(bands, d, [&](int l, int m, V X, V, V c, V s, V, V) {
+    const V g = gain[l] * X;
+    store_lanes<T, W>(out + index(l, m) * stride, g * c, filled);
+    if (m > 0) store_lanes<T, W>(out + index(l, -m) * stride, g * s, filled);
+  });
+}
+
+/// Adds a block to `lanes`: 3 or 12 lane sums a coefficient.
+template <class T, int W, bool kGradient>
+void accumulate_block(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
+                      Lanes<T, W>* lanes) {
+  using V = Lanes<T, W>;
+  const int filled = std::min(W, lights.count - first);
+  const SeenLanes<T, W> seen(shape, p, lights, first, filled);
+  const DirectionLanes<T, V> d = seen.direction();
+  V gain[kMaxBands], growth[kMaxBands], colour[3];
+  seen.gains(bands, d.sign, gain, kGradient ? growth : nullptr);
+  for (int k = 0; k < 3; ++k) colour[k] = load_lanes<T, W>(lights.radiance[k] + first, filled);
+
+  constexpr int kSums = kGradient ? 12 : 3;
+  const auto add = [&](int i, V value, V gx, V gy, V gz) {
+    V* sum = lanes + static_cast<size_t>(i) * kSums;
+    for (int k = 0; k < 3; ++k) {
+      sum[k] += colour[k] * value;
+      if constexpr (kGradient) {
+        sum[3 + 3 * k] += colour[k] * gx;
+        sum[4 + 3 * k] += colour[k] * gy;
+        sum[5 + 3 * k] += colour[k] * gz;
+      }
+    }
+  };
+  basis_lanes<T, W, kGradient>(bands, d, [&](int l, int m, V X, V dX, V c, V s, V c1, V s1) {
+    const V g = gain[l] * X;
+    if constexpr (!kGradient) {
+      add(index(l, m), g * c, g, g, g);
+      if (m > 0) add(index(l, -m), g * s, g, g, g);
+    } else {
+      // grad_x = -g (grad Y - w (w.grad Y))/d - g' w Y (Eq. 3.26); w.grad of X (x+iy)^m is (z dX + m
+      // X)(x+iy)^m.
+      const V turn = -seen.inverse_d * gain[l], flat = turn * X, up = turn * dX;
+      const V along = -(growth[l] * X) - (up * d.z + T(m) * flat);
+      V k = along * c;
+      add(index(l, m), g * c, flat * c1 + d.x * k, d.y * k - flat * s1, up * c + d.z * k);
+      if (m == 0) return;
+      k = along * s;
+      add(index(l, -m), g * s, flat * s1 + d.x * k, flat * c1 + d.y * k, up * s + d.z * k);
+    }
+  });
+}
+
+template <class T, bool kGradient>
+void accumulate(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, T* sum,
+                T* gradient) {
+  constexpr int kWidth = lane_count<T>, kSums = kGradient ? 12 : 3;
+  using V = Lanes<T, kWidth>;
+  thread_local std::vector<V> lanes;
+  const int n = count(bands);
+  lanes.assign(static_cast<size_t>(n) * kSums, V{});
+  for (int first = 0; first < lights.count; first += kWidth) {
+    accumulate_block<T, kWidth, kGradient>(bands, shape, p, lights, first, lanes.data());
+  }
+  for (int i = 0; i < n; ++i) {
+    const V* v = &lanes[static_cast<size_t>(i) * kSums];
+    for (int k = 0; k < kSums; ++k) {
+      T total = 0;
+      for (int lane = 0; lane < kWidth; ++lane) total += v[k][lane];
+      (k < 3 ? sum[k * n + i] : gradient[(k - 3) * n + i]) += total;
+    }
+  }
+}
+
+}  // namespace
+
+template <class T>
+void project_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* L) {
+  constexpr int kWidth = lane_count<T>;
+  int first = 0;
+  for (; first + 2 * kWidth <= lights.count; first += 2 * kWidth) {
+    project_block<T, 2 * kWidth>(bands, shape, x, lights, first, L);
+  }
+  for (; first < lights.count; first += kWidth) project_block<T, kWidth>(bands, shape, x, lights, first, L);
+}
+
+template <class T>
+void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum) {
+  accumulate<T, false>(bands, shape, x, lights, sum, nullptr);
+}
+
+template <class T>
+void accumulate_lights_gradient(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights,
+                                T* sum, T* gradient) {
+  accumulate<T, true>(bands, shape, x, lights, sum, gradient);
+}
+
+#define ZONAL_INSTANTIATE(T)                                                                      \
+  template void project_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*);    \
+  template void accumulate_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*); \
+  template void accumulate_lights_gradient<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*, T*);
+ZONAL_INSTANTIATE(float)
+ZONAL_INSTANTIATE(double)
+#undef ZONAL_INSTANTIATE
+
+}  // namespace zonal::sh

@@ -1,0 +1,39 @@
+#pragma once
+/// Many spherical lights or oriented disks at once, one a SIMD lane: coefficients of each, or their sum in
+/// three colours with its gradient, which is what a probe or a shaded point wants. Any number of bands.
+///
+///     std::vector<float> sum(3 * sh::count(9));                      // [colour][l(l+1)+m], zeroed by the
+///     caller sh::accumulate_lights(9, sh::LightShape::sphere, x, lights, sum.data());
+///
+/// Distances are computed in double for float lights too: close to a sphere's surface its size hangs on d^2 -
+/// r^2.
+
+#include "sh/basis.h"
+
+namespace zonal::sh {
+
+enum class LightShape { sphere, disk };
+
+/// Structure of arrays, caller-owned. Radius > 0. Squares of distances must stay in double's range.
+template <class T>
+struct LightArrays {
+  int count = 0;
+  const T *x = nullptr, *y = nullptr, *z = nullptr;  ///< centres
+  const T* radius = nullptr;
+  const T* radiance[3] = {nullptr, nullptr, nullptr};  ///< red, green, blue; for sums alone
+};
+
+/// L[i * lights.count + k] = coefficient i of light k of radiance 1.
+template <class T>
+void project_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* L);
+
+/// sum[c * count(bands) + i] += radiance_c times coefficient i, over all lights.
+template <class T>
+void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum);
+
+/// The same, and gradient[(c * 3 + axis) * count(bands) + i] += its derivative with respect to x.
+template <class T>
+void accumulate_lights_gradient(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights,
+                                T* sum, T* gradient);
+
+}  // namespace zonal::sh
