@@ -39,14 +39,15 @@ struct PartialRow {
 
 template <class T>
 void evaluate_batch(int bands, const T* x, const T* y, const T* z, int count, T* Y, int stride) {
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const auto d = batch::load(x + first, y + first, z + first, lanes);
     if (lanes == kLanes<T>) {
-      batch::values<0>(bands, d, batch::Store<T>{Y + first, stride});
+      batch::values<0>(table, bands, d, batch::Store<T>{Y + first, stride});
     } else {
       const PartialRow<T> row{stride, lanes};
-      batch::values<0>(bands, d, [&](int i, const batch::Pack<T>& v) { row(Y + first, i, v); });
+      batch::values<0>(table, bands, d, [&](int i, const batch::Pack<T>& v) { row(Y + first, i, v); });
     }
   }
 }
@@ -55,6 +56,7 @@ template <class T>
 void evaluate_gradient_batch(int bands, const T* x, const T* y, const T* z, int count, T* Y, T* gradient_x,
                              T* gradient_y, T* gradient_z, int stride) {
   using Pack = batch::Pack<T>;
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const Normalized<T> v(x + first, y + first, z + first, lanes);
@@ -64,13 +66,13 @@ void evaluate_gradient_batch(int bands, const T* x, const T* y, const T* z, int 
     T* const out[4] = {Y + first, gradient_x + first, gradient_y + first, gradient_z + first};
     if (lanes == kLanes<T>) {
       const batch::StoreGradient<T> rows{{out[0], out[1], out[2], out[3]}, stride};
-      batch::gradients<0>(bands, d,
+      batch::gradients<0>(table, bands, d,
                           [&](int i, const Pack& f, const Pack& gx, const Pack& gy, const Pack& gz) {
                             rows(i, f, gx * inverse, gy * inverse, gz * inverse);
                           });
     } else {
       const PartialRow<T> row{stride, lanes};
-      batch::gradients<0>(bands, d,
+      batch::gradients<0>(table, bands, d,
                           [&](int i, const Pack& f, const Pack& gx, const Pack& gy, const Pack& gz) {
                             row(out[0], i, f), row(out[1], i, gx * inverse), row(out[2], i, gy * inverse),
                                 row(out[3], i, gz * inverse);
@@ -83,6 +85,7 @@ template <class T>
 void evaluate_hessian_batch(int bands, const T* x, const T* y, const T* z, int count, T* Y,
                             T* const gradient[3], T* const hessian[6], int stride) {
   using Pack = batch::Pack<T>;
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const Normalized<T> v(x + first, y + first, z + first, lanes);
@@ -90,7 +93,7 @@ void evaluate_hessian_batch(int bands, const T* x, const T* y, const T* z, int c
     Pack inverse;
     std::memcpy(&inverse, v.inverse, sizeof inverse);
     const PartialRow<T> row{stride, lanes};
-    batch::hessians<0>(bands, d, [&](int i, const Pack& f, const Pack(&g)[3], const Pack(&h)[6]) {
+    batch::hessians<0>(table, bands, d, [&](int i, const Pack& f, const Pack(&g)[3], const Pack(&h)[6]) {
       row(Y + first, i, f);
       for (int k = 0; k < 3; ++k) row(gradient[k] + first, i, g[k] * inverse);
       for (int k = 0; k < 6; ++k) row(hessian[k] + first, i, h[k] * inverse * inverse);
@@ -101,12 +104,13 @@ void evaluate_hessian_batch(int bands, const T* x, const T* y, const T* z, int c
 template <class T>
 void reconstruct(int bands, const T* coefficients, const T* x, const T* y, const T* z, int count, T* value) {
   using Pack = batch::Pack<T>;
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const auto d = batch::load(x + first, y + first, z + first, lanes);
-    Pack c = d.x - d.x + T(1), s = d.x - d.x, sum = s;  // (x+iy)^m
+    Pack c = Pack{} + T(1), s = {}, sum = {};  // (x+iy)^m
     for (int m = 0; m < bands; ++m) {
-      batch::add_dot_column(bands, m, d, coefficients, c, s, sum);
+      batch::add_dot_column(table, bands, m, d, coefficients, c, s, sum);
       const Pack next = d.x * c - d.y * s;
       s = d.x * s + d.y * c;
       c = next;
@@ -119,6 +123,7 @@ template <class T>
 void project(int bands, const T* x, const T* y, const T* z, const T* weight, int count, T* coefficients) {
   using Pack = batch::Pack<T>;
   constexpr int kRun = 64 * kLanes<T>;  // directions summed in T, a lane each 64th
+  const Tables<T>& table = tables<T>();
   batch::Scratch<T> scratch(1, bands);
   T* const sums = scratch.array(0);
   const int n = sh::count(bands);
@@ -128,9 +133,9 @@ void project(int bands, const T* x, const T* y, const T* z, const T* weight, int
     for (int first = run; first < std::min(count, run + kRun); first += kLanes<T>) {
       const int lanes = std::min(kLanes<T>, count - first);
       const auto d = batch::load(x + first, y + first, z + first, lanes);
-      Pack w = d.x - d.x;
+      Pack w = {};
       std::memcpy(&w, weight + first, lanes * sizeof(T));
-      batch::values<0>(bands, d, [&](int i, const Pack& v) {
+      batch::values<0>(table, bands, d, [&](int i, const Pack& v) {
         Pack sum;
         std::memcpy(&sum, sums + i * kLanes<T>, sizeof sum);
         sum += w * v;

@@ -26,10 +26,11 @@ namespace zonal::sh {
 template <class T, int kBands = 0, class Consumer>
 void evaluate_blocks(int bands, const T* x, const T* y, const T* z, int count, Consumer&& consumer) {
   batch::Scratch<T> scratch(1, bands);
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const auto d = batch::load(x + first, y + first, z + first, lanes);
-    batch::values<kBands>(bands, d, batch::Store<T>{scratch.array(0), kLanes<T>});
+    batch::values<kBands>(table, bands, d, batch::Store<T>{scratch.array(0), kLanes<T>});
     consumer(first, lanes, static_cast<const T*>(scratch.array(0)));
   }
 }
@@ -39,10 +40,12 @@ template <class T, int kBands = 0, class Consumer>
 void evaluate_gradient_blocks(int bands, const T* x, const T* y, const T* z, int count, Consumer&& consumer) {
   batch::Scratch<T> scratch(4, bands);
   T* const out[4] = {scratch.array(0), scratch.array(1), scratch.array(2), scratch.array(3)};
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>) {
     const int lanes = std::min(kLanes<T>, count - first);
     const auto d = batch::load(x + first, y + first, z + first, lanes);
-    batch::gradients<kBands>(bands, d, batch::StoreGradient<T>{{out[0], out[1], out[2], out[3]}, kLanes<T>});
+    batch::gradients<kBands>(table, bands, d,
+                             batch::StoreGradient<T>{{out[0], out[1], out[2], out[3]}, kLanes<T>});
     consumer(first, lanes, static_cast<const T*>(out[0]), static_cast<const T*>(out[1]),
              static_cast<const T*>(out[2]), static_cast<const T*>(out[3]));
   }
@@ -53,9 +56,10 @@ void evaluate_gradient_blocks(int bands, const T* x, const T* y, const T* z, int
 template <class T, int kBands = 0>
 void evaluate_blocked(int bands, const T* x, const T* y, const T* z, int count, T* Y) {
   const int size = (kBands > 0 ? kBands * kBands : sh::count(bands)) * kLanes<T>;
+  const Tables<T>& table = tables<T>();
   for (int first = 0; first < count; first += kLanes<T>, Y += size) {
     const auto d = batch::load(x + first, y + first, z + first, std::min(kLanes<T>, count - first));
-    batch::values<kBands>(bands, d, batch::Store<T>{Y, kLanes<T>});
+    batch::values<kBands>(table, bands, d, batch::Store<T>{Y, kLanes<T>});
   }
 }
 
@@ -64,10 +68,11 @@ template <class T, int kBands = 0>
 void evaluate_gradient_blocked(int bands, const T* x, const T* y, const T* z, int count, T* Y, T* gradient_x,
                                T* gradient_y, T* gradient_z) {
   const int size = (kBands > 0 ? kBands * kBands : sh::count(bands)) * kLanes<T>;
+  const Tables<T>& table = tables<T>();
   for (int first = 0, o = 0; first < count; first += kLanes<T>, o += size) {
     const auto d = batch::load(x + first, y + first, z + first, std::min(kLanes<T>, count - first));
     batch::gradients<kBands>(
-        bands, d,
+        table, bands, d,
         batch::StoreGradient<T>{{Y + o, gradient_x + o, gradient_y + o, gradient_z + o}, kLanes<T>});
   }
 }

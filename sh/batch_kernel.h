@@ -93,7 +93,7 @@ ZONAL_SH_INLINE Directions<T> load(const T* px, const T* py, const T* pz, int la
   const Pack<T> scale = excess * (T(0.375) * excess - T(0.5));
   Directions<T> d;
   d.x = x + x * scale, d.y = y + y * scale, d.z = z + z * scale;
-  const Pack<T> zero = x - x, one = zero + T(1);
+  const Pack<T> zero = {}, one = zero + T(1);
   d.sign = d.z < zero ? -one : one;
   // 1 - |z| is exact near the pole, so that no division is needed.
   const Pack<T> up = z * d.sign;
@@ -122,12 +122,11 @@ struct StoreGradient {
 
 /// sink(i, Y_i) for each i, order by order. kBands > 0 is the number of bands, known to the compiler.
 template <int kBands, class T, class Sink>
-ZONAL_SH_INLINE void values(int bands, const Directions<T>& d, Sink&& sink) {
+ZONAL_SH_INLINE void values(const Tables<T>& table, int bands, const Directions<T>& d, Sink&& sink) {
   ZONAL_SH_EXACT
   if (kBands > 0) bands = kBands;
-  const Tables<T>& table = tables<T>();
-  Pack<T> c = d.x - d.x + T(1), s = d.x - d.x;  // (x+iy)^m
-  const Pack<T> one = c, zero = s;
+  const Pack<T> zero = {}, one = zero + T(1);
+  Pack<T> c = one, s = zero;  // (x+iy)^m
   ZONAL_SH_UNROLL_OUTER
   for (int m = 0; m < bands; ++m) {
     const Step<T>* step = table.column(m);
@@ -146,19 +145,19 @@ ZONAL_SH_INLINE void values(int bands, const Directions<T>& d, Sink&& sink) {
       const Pack<T> r = re, i = im;
       re = re_next, im = im_next, re_next = r, im_next = i;
     }
-    const Pack<T> next = d.x * c - d.y * s;
-    s = d.x * s + d.y * c;
+    const Pack<T> next = m > 0 ? d.x * c - d.y * s : d.x;
+    s = m > 0 ? d.x * s + d.y * c : d.y;
     c = next;
   }
 }
 
 /// Adds sum_l over order m of coefficients[i] Y_i: a column is summed before it meets (x+iy)^m = c + is.
 template <class T>
-ZONAL_SH_INLINE void add_dot_column(int bands, int m, const Directions<T>& d, const T* coefficients,
-                                    const Pack<T>& c, const Pack<T>& s, Pack<T>& sum) {
+ZONAL_SH_INLINE void add_dot_column(const Tables<T>& table, int bands, int m, const Directions<T>& d,
+                                    const T* coefficients, const Pack<T>& c, const Pack<T>& s, Pack<T>& sum) {
   ZONAL_SH_EXACT
-  const Step<T>* step = tables<T>().column(m);
-  const Pack<T> zero = d.x - d.x;
+  const Step<T>* step = table.column(m);
+  const Pack<T> zero = {};
   Pack<T> p = zero + T(1), change = zero;
   Pack<T> re = zero, im = zero, re_next = zero, im_next = zero;  // same and other parity of l - m, by turns
   for (int l = m;;) {
@@ -183,11 +182,10 @@ ZONAL_SH_INLINE void add_dot_column(int bands, int m, const Directions<T>& d, co
 
 /// sink(i, Y_i, gradient x, y, z) at unit directions; see evaluate_gradient in basis.cpp.
 template <int kBands, class T, class Sink>
-ZONAL_SH_INLINE void gradients(int bands, const Directions<T>& d, Sink&& sink) {
+ZONAL_SH_INLINE void gradients(const Tables<T>& table, int bands, const Directions<T>& d, Sink&& sink) {
   ZONAL_SH_EXACT
   if (kBands > 0) bands = kBands;
-  const Tables<T>& table = tables<T>();
-  const Pack<T> zero = d.x - d.x, one = zero + T(1), rho2 = d.x * d.x + d.y * d.y;
+  const Pack<T> zero = {}, one = zero + T(1), rho2 = d.x * d.x + d.y * d.y;
   Pack<T> c = one, s = zero, c1 = zero, s1 = zero;  // (x+iy)^m and m (x+iy)^{m-1}
   ZONAL_SH_UNROLL_OUTER
   for (int m = 0; m < bands; ++m) {
@@ -217,7 +215,7 @@ ZONAL_SH_INLINE void gradients(int bands, const Directions<T>& d, Sink&& sink) {
       if (m > 0) sink(index(l, -m), f * s, f * s1 - rx * s, f * c1 - ry * s, up * s);
       sink(index(l, m), f * c, f * c1 - rx * c, -(f * s1) - ry * c, up * c);
     }
-    const Pack<T> next = d.x * c - d.y * s, next_s = d.x * s + d.y * c;
+    const Pack<T> next = m > 0 ? d.x * c - d.y * s : d.x, next_s = m > 0 ? d.x * s + d.y * c : d.y;
     c1 = T(m + 1) * c, s1 = T(m + 1) * s;
     c = next, s = next_s;
   }
@@ -226,11 +224,10 @@ ZONAL_SH_INLINE void gradients(int bands, const Directions<T>& d, Sink&& sink) {
 /// sink(i, Y_i, gradient[3], hessian[6]) at unit directions, hessian as xx, xy, xz, yy, yz, zz; see
 /// evaluate_hessian in basis.cpp.
 template <int kBands, class T, class Sink>
-ZONAL_SH_INLINE void hessians(int bands, const Directions<T>& d, Sink&& sink) {
+ZONAL_SH_INLINE void hessians(const Tables<T>& table, int bands, const Directions<T>& d, Sink&& sink) {
   ZONAL_SH_EXACT
   if (kBands > 0) bands = kBands;
-  const Tables<T>& table = tables<T>();
-  const Pack<T> zero = d.x - d.x, one = zero + T(1), rho2 = d.x * d.x + d.y * d.y;
+  const Pack<T> zero = {}, one = zero + T(1), rho2 = d.x * d.x + d.y * d.y;
   const Pack<T> x = d.x, y = d.y, z = d.z;
   Pack<T> c = one, s = zero, c1 = zero, s1 = zero, c2 = zero, s2 = zero;  // (x+iy)^m, ^{m-1}, ^{m-2}
   for (int m = 0; m < bands; ++m) {
