@@ -1,6 +1,9 @@
 #pragma once
 /// The kinds of golden-vector file, one function each. `file` is the whole file.
 
+#include <algorithm>
+#include <cmath>
+
 #include "apps/golden.h"
 #include "apps/verify_report.h"
 #include "sh/basis.h"
@@ -28,6 +31,18 @@ inline dvec3 seen(Precision p, const dvec3& v) {
 inline std::vector<double> seen(Precision p, std::vector<double> values) {
   for (double& x : values) x = seen(p, x);
   return values;
+}
+
+/// Whether rounding left what the functions ask for: finite numbers (float ends at 3.4e38), a length other
+/// than 0.
+inline bool held(double positive) {
+  return positive > 0 && std::isfinite(positive);
+}
+inline bool held(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+inline bool held(const dvec3& v) {
+  return held(std::vector{v.x, v.y, v.z}) && v != dvec3(0);
 }
 
 /// Numbers already rounded, as the type they were rounded to.
