@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "sh/basis_rows.h"
 #include "sh/tables.h"
 
 #ifdef __clang__
@@ -92,17 +94,7 @@ Vec3<T> normalized(const Vec3<T>& v) {
 template <class T>
 void evaluate(int bands, const Vec3<T>& unit, T* Y) {
   const Direction<T> d = direction(unit);
-  const Powers<T> powers(bands, d.x, d.y);
-  T p[kMaxBands];
-  for (int m = 0; m < bands; ++m) {
-    legendre_column(bands, m, d, p);
-    const Step<T>* column = tables<T>().column(m);
-    for (int l = m; l < bands; ++l) {
-      const T q = column[l - m].norm * p[l];
-      Y[index(l, -m)] = q * powers.im(m);
-      Y[index(l, m)] = q * powers.re(m);
-    }
-  }
+  rows::evaluate<false>(bands, rows::Input<T>{d.x, d.y, std::abs(d.z), d.u, d.sign, T(1)}, Y, Y, Y, Y);
 }
 
 /// The polynomial p = q(z) Re (x+iy)^m has the gradient (m q C_{m-1}, -m q S_{m-1}, q' C_m). That of Y(v/|v|)
@@ -110,28 +102,23 @@ void evaluate(int bands, const Vec3<T>& unit, T* Y) {
 /// With S for C, the y component turns: Im i(x+iy)^{m-1} = C_{m-1}. (Mézières 2022, section 3.2, without its
 /// angles.)
 template <class T>
-void evaluate_gradient(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient) {
+void evaluate_gradient(int bands, const Vec3<T>& v, T* Y, T* gradient_x, T* gradient_y, T* gradient_z) {
   T inverse;
   const Direction<T> d = direction(v, inverse);
-  const Powers<T> powers(bands, d.x, d.y);
-  const T rho2 = d.x * d.x + d.y * d.y;
-  T columns[2][kMaxBands];
-  T *p = columns[0], *p1 = columns[1];
-  legendre_column(bands, 0, d, p);
-  for (int m = 0; m < bands; ++m, std::swap(p, p1)) {
-    legendre_column(bands, m + 1, d, p1);
-    const Step<T>* column = tables<T>().column(m);
-    const T c = powers.re(m), s = powers.im(m), c1 = powers.re(m - 1), s1 = powers.im(m - 1);
-    for (int l = m; l < bands; ++l) {
-      const T f = column[l - m].norm * p[l], df = column[l - m].slope * p1[l];
-      const T radial = m * f + d.z * df, up = (rho2 * df - m * d.z * f) * inverse, mf = m * f * inverse;
-      const T rx = radial * d.x * inverse, ry = radial * d.y * inverse;
-      Y[index(l, -m)] = f * s;
-      Y[index(l, m)] = f * c;
-      gradient[index(l, -m)] = Vec3<T>(mf * s1 - rx * s, mf * c1 - ry * s, up * s);
-      gradient[index(l, m)] = Vec3<T>(mf * c1 - rx * c, -mf * s1 - ry * c, up * c);
-    }
-  }
+  const rows::Input<T> input{d.x, d.y, std::abs(d.z), d.u, d.sign, inverse};
+  rows::evaluate<true>(bands, input, Y, gradient_x, gradient_y, gradient_z);
+}
+
+template <class T>
+void evaluate_gradient(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient) {
+  constexpr int kSmall = 20;
+  T small[3 * kSmall * kSmall];
+  std::vector<T> large;
+  const int n = count(bands);
+  if (bands > kSmall) large.resize(3 * n);
+  T* const g = bands > kSmall ? large.data() : small;
+  evaluate_gradient(bands, v, Y, g, g + n, g + 2 * n);
+  for (int i = 0; i < n; ++i) gradient[i] = Vec3<T>(g[i], g[n + i], g[2 * n + i]);
 }
 
 /// The Hessian of Y(v/|v|) is (P (H_p - (d.g) I) P - d t^T - t d^T) / |v|^2 with P = I - d d^T, g and H_p the
@@ -184,10 +171,11 @@ void evaluate_hessian(int bands, const Vec3<T>& v, T* Y, Vec3<T>* gradient, Hess
   }
 }
 
-#define ZONAL_INSTANTIATE(T)                                          \
-  template Vec3<T> normalized(const Vec3<T>&);                        \
-  template void evaluate(int, const Vec3<T>&, T*);                    \
-  template void evaluate_gradient(int, const Vec3<T>&, T*, Vec3<T>*); \
+#define ZONAL_INSTANTIATE(T)                                            \
+  template Vec3<T> normalized(const Vec3<T>&);                          \
+  template void evaluate(int, const Vec3<T>&, T*);                      \
+  template void evaluate_gradient(int, const Vec3<T>&, T*, T*, T*, T*); \
+  template void evaluate_gradient(int, const Vec3<T>&, T*, Vec3<T>*);   \
   template void evaluate_hessian(int, const Vec3<T>&, T*, Vec3<T>*, Hessian<T>*);
 ZONAL_INSTANTIATE(float)
 ZONAL_INSTANTIATE(double)

@@ -26,7 +26,7 @@ KERNEL vec3 sh_direction(vec3 d, OUT(float) u) {
 KERNEL void sh_evaluate(int bands, vec3 d, INOUT(ShCoefficients) Y) {
   float u;
   vec3 w = sh_direction(d, u);
-  float sign = w.z < 0.0f ? -1.0f : 1.0f;
+  float side = w.z < 0.0f ? -1.0f : 1.0f;
   float c = 1.0f;  // (x+iy)^m
   float s = 0.0f;
   float start = 0.282094792f;
@@ -43,7 +43,7 @@ KERNEL void sh_evaluate(int bands, vec3 d, INOUT(ShCoefficients) Y) {
         change = (degree - order - 1.0f) * inverse * change - (2.0f * degree - 1.0f) * inverse * p;
         p += u * change;
         norm *= sqrt((2.0f * degree + 1.0f) * (degree + order) / ((2.0f * degree - 1.0f) * (degree - order)));
-        parity *= sign;
+        parity *= side;
       }
       float q = norm * p * parity;
       Y.c[l * (l + 1) - m] = q * s;
@@ -60,7 +60,7 @@ KERNEL void sh_evaluate(int bands, vec3 d, INOUT(ShCoefficients) Y) {
 KERNEL void sh_evaluate_gradient(int bands, vec3 d, INOUT(ShCoefficients) Y, INOUT(ShGradient) gradient) {
   float u;
   vec3 w = sh_direction(d, u);
-  float sign = w.z < 0.0f ? -1.0f : 1.0f;
+  float side = w.z < 0.0f ? -1.0f : 1.0f;
   float rho2 = w.x * w.x + w.y * w.y;
   float c = 1.0f;  // (x+iy)^m and (x+iy)^(m-1)
   float s = 0.0f;
@@ -87,11 +87,11 @@ KERNEL void sh_evaluate_gradient(int bands, vec3 d, INOUT(ShCoefficients) Y, INO
         }
         p1 = l == m + 1 ? 1.0f : p1 + u * change1;
         norm *= sqrt((2.0f * degree + 1.0f) * (degree + order) / ((2.0f * degree - 1.0f) * (degree - order)));
-        parity *= sign;
+        parity *= side;
       }
       float slope = norm * (degree - order) * (degree + order + 1.0f) / (2.0f * (order + 1.0f));
       float f = norm * p * parity;
-      float df = slope * p1 * parity * sign;
+      float df = slope * p1 * parity * side;
       float radial = order * f + w.z * df;
       float up = rho2 * df - order * w.z * f;
       float mf = order * f;

@@ -1,7 +1,10 @@
 #include "sh/tables.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+
+#include "sh/basis_rows.h"
 
 namespace zonal::sh {
 
@@ -37,6 +40,33 @@ const Tables<T>& tables() {
   static const Tables<T> t = make_tables<T>();
   return t;
 }
+
+namespace rows {
+
+template <class T>
+const RowTables<T>& row_tables() {
+  static const std::unique_ptr<const RowTables<T>> shared = [] {
+    auto t = std::make_unique<RowTables<T>>();
+    constexpr int W = kWidth<T>;
+    for (int m = 0; m < kMaxBands; ++m) {
+      for (int l = m; l < kMaxBands; ++l) {
+        const Step<T>& step = tables<T>().column(m)[l - m];
+        auto& entry = t->entries[l][m / W];
+        entry.rise[m % W] = step.rise;
+        entry.fall[m % W] = step.fall;
+        entry.norm[m % W] = step.norm;
+        entry.slope[m % W] = step.slope;
+      }
+    }
+    return t;
+  }();
+  return *shared;
+}
+
+template const RowTables<float>& row_tables();
+template const RowTables<double>& row_tables();
+
+}  // namespace rows
 
 template const Tables<float>& tables();
 template const Tables<double>& tables();

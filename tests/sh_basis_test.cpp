@@ -211,6 +211,45 @@ TEST(sh_basis, addition_theorem) {
   }
 }
 
+/// evaluate and evaluate_gradient run over rows, evaluate_hessian over columns: two codes for the same
+/// numbers.
+template <class T>
+void gradient_forms_agree(double tolerance) {
+  for (const int bands : {1, 2, 3, 4, 5, 7, 8, 9, 10, 15, 16, 17, 20, 40, 101}) {
+    const int n = sh::count(bands);
+    for (const Vec3<double>& d : directions(14)) {
+      const Vec3<T> v(d * 3.0);
+      const Basis<T> basis(bands, v);
+      // One number more, to see writes beyond the end.
+      std::vector<T> Y(n + 1, T(7)), values(n + 1, T(7)), g[3];
+      for (auto& component : g) component.assign(n + 1, T(7));
+      std::vector<Vec3<T>> gradient(n + 1, Vec3<T>(7));
+      sh::evaluate(bands, sh::normalized(v), values.data());
+      sh::evaluate_gradient(bands, v, Y.data(), g[0].data(), g[1].data(), g[2].data());
+      sh::evaluate_gradient(bands, v, Y.data(), gradient.data());
+      for (int i = 0; i < n; ++i) {
+        ASSERT_NEAR(values[i], basis.Y[i], tolerance * (bands + 10)) << bands << " " << i;
+        ASSERT_NEAR(Y[i], basis.Y[i], tolerance * (bands + 10)) << bands << " " << i;
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_NEAR(g[k][i], basis.gradient[i][k], tolerance * bands * (bands + 10)) << bands << " " << i;
+          ASSERT_EQ(g[k][i], gradient[i][k]);
+        }
+      }
+      ASSERT_EQ(values[n], 7);
+      ASSERT_EQ(Y[n], 7);
+      for (int k = 0; k < 3; ++k) ASSERT_EQ(g[k][n], 7);
+      ASSERT_EQ(gradient[n].x, 7);
+    }
+  }
+}
+
+TEST(sh_basis, gradient_forms_agree_in_float) {
+  gradient_forms_agree<float>(1.2e-7);
+}
+TEST(sh_basis, gradient_forms_agree_in_double) {
+  gradient_forms_agree<double>(2.3e-16);
+}
+
 TEST(sh_basis, extreme_vectors_give_numbers) {
   for (const float size : {1e-45f, 1e-38f, 1e-30f, 1e-10f, 1e10f, 1e30f, 3.4e38f}) {
     for (const Vec3<float> v :
