@@ -25,7 +25,7 @@ struct SeenLanes {
     D r = wide(lights.radius + first, filled);
     const D d2 = wx * wx + wy * wy + wz * wz, r2 = r * r;
     const D safe = d2 > 0 ? d2 : d2 * 0 + 1.0;
-    const D inverse = 1.0 / root(safe);
+    const D inverse = 1.0 / sqrt_lanes(safe);
     const D ax = wx * inverse, ay = wy * inverse, az = d2 > 0 ? wz * inverse : d2 * 0 + 1.0;
     x = narrow(ax), y = narrow(ay), z = narrow(az);
     u = narrow((ax * ax + ay * ay) / ((az < 0 ? -az : az) + 1.0));
@@ -35,30 +35,21 @@ struct SeenLanes {
       const D h2 = d2 - r2;
       // On or inside the sphere: the hemisphere, standing still.
       const D cosine2 = h2 > 0 ? h2 * (inverse * inverse) : h2 * 0;
-      const V cosine = root(narrow(cosine2));
-      sine2 = h2_positive(h2, narrow(r2 * (inverse * inverse)), zero + T(1));
+      const V cosine = sqrt_lanes(narrow(cosine2));
+      sine2 = narrow(h2 > 0 ? r2 * (inverse * inverse) : d2 * 0 + 1.0);
       versine = sine2 / (cosine + T(1));
-      dt = h2_positive(h2, -sine2 * inverse_d / (cosine > 0 ? cosine : zero + T(1)), zero);
+      dt = cosine > 0 ? -sine2 * inverse_d / (cosine > 0 ? cosine : zero + T(1)) : zero;
     } else {
       const D inverse_s2 = 1.0 / (d2 + r2);
       sine2 = narrow(r2 * inverse_s2);
       const D s2d2 = d2 * inverse_s2;
-      const V cosine = root(narrow(s2d2));
+      const V cosine = sqrt_lanes(narrow(s2d2));
       versine = sine2 / (cosine + T(1));
-      dt = -sine2 * root(narrow(inverse_s2));
+      dt = -sine2 * sqrt_lanes(narrow(inverse_s2));
     }
   }
 
-  template <class U>
-  static U root(U v) {
-    for (int k = 0; k < W; ++k) v[k] = std::sqrt(v[k]);
-    return v;
-  }
   static V narrow(D v) { return __builtin_convertvector(v, V); }
-  static V h2_positive(D h2, V yes, V no) {
-    for (int k = 0; k < W; ++k) yes[k] = h2[k] > 0 ? yes[k] : no[k];
-    return yes;
-  }
   static D wide(const T* p, int filled) { return __builtin_convertvector(load_lanes<T, W>(p, filled), D); }
   DirectionLanes<T, V> direction() const { return {x, y, z, u}; }
 

@@ -19,11 +19,13 @@ SeenCap<T> sphere_cap(double d, double h2, double r) {
     seen.cap = {1, 1}, seen.cosine = 0;
     return seen;
   }
-  const double h = std::sqrt(h2), cosine = h / d, ratio = r / d, sine2 = ratio * ratio;
+  const double h = std::sqrt(h2), inverse_d = 1 / d, inverse_h = 1 / h;
+  const double cosine = h * inverse_d, ratio = r * inverse_d, sine2 = ratio * ratio;
   seen.cap = {T(sine2 / (1 + cosine)), T(sine2)};
   seen.cosine = T(cosine);
-  seen.dt = T(-sine2 / h);                                             // (Eq. 3.28) times sin a
-  seen.d2t = T(ratio / h * (ratio / h) * (3 * h2 + r * r) / (d * h));  // r^2 (3d^2 - 2r^2)/(d h)^3
+  seen.dt = T(-sine2 * inverse_h);  // (Eq. 3.28) times sin a
+  const double k = ratio * inverse_h;
+  seen.d2t = T(k * k * (3 * h2 + r * r) * (inverse_d * inverse_h));  // r^2 (3d^2 - 2r^2)/(d h)^3
   return seen;
 }
 

@@ -19,6 +19,17 @@ struct LanesOf {
 template <class T, int W>
 using Lanes = typename LanesOf<T, W>::type;
 
+template <class V>
+inline V sqrt_lanes(V v) {
+#if __has_builtin(__builtin_elementwise_sqrt)
+  return __builtin_elementwise_sqrt(v);
+#else
+  constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(v[0]));
+  for (int k = 0; k < kWidth; ++k) v[k] = std::sqrt(v[k]);
+  return v;
+#endif
+}
+
 /// Lanes of one 256-bit register.
 template <class T>
 inline constexpr int lane_count = 32 / static_cast<int>(sizeof(T));

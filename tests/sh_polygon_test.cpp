@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "sh/checked_lights.h"
 #include "sh/polygon.h"
 #include "sh/simple_lights.h"
 #include "sh/solid_angle.h"
@@ -225,6 +226,105 @@ TEST(ShPolygon, batches_are_sums) {
       EXPECT_NEAR(gy[i][c], g0[i].y * radiance[0][c] + g1[i].y * radiance[1][c], 1e-13);
     }
   }
+}
+
+constexpr TriangleMethod kMethods[] = {TriangleMethod::main, TriangleMethod::alternative,
+                                       TriangleMethod::compromise_radius, TriangleMethod::compromise_angle};
+
+// Central differences, step 1e-6: error 1e-10 of the largest times h^-1 rounding 1e-10.
+TEST(ShTriangleSpheres, gradients_are_the_derivatives) {
+  const TriangleSphere<double> t =
+      triangle_sphere(dvec3(0.5, -0.3, 1.0), dvec3(0.4, 0.6, 1.2), dvec3(-0.5, 0.1, 0.9));
+  const double h = 1e-6;
+  for (const TriangleMethod method : kMethods) {
+    for (const dvec3 x : {dvec3(0.1, 0.2, -0.4), dvec3(0.3, -0.2, 2.5)}) {
+      double L[81], a[81], b[81];
+      dvec3 G[81];
+      triangle_sphere_light(9, method, t, x, L, G);
+      EXPECT_GT(L[0], 0.01);
+      for (int k = 0; k < 3; ++k) {
+        dvec3 e(0);
+        e[k] = h;
+        triangle_sphere_light(9, method, t, x + e, a), triangle_sphere_light(9, method, t, x - e, b);
+        for (int i = 0; i < 81; ++i)
+          EXPECT_NEAR((a[i] - b[i]) / (2 * h), G[i][k], 1e-8) << int(method) << " " << i;
+      }
+    }
+  }
+}
+
+// A small triangle far away, size/distance 1e-4: every method meets the exact polygon to the square of that.
+TEST(ShTriangleSpheres, far_triangles_agree_with_the_polygon) {
+  const Polygon p = {{10, 0, 50}, {10, 0.01, 50}, {10.01, 0.003, 50.004}};
+  const std::vector<double> exact = light(9, p, dvec3(0));
+  for (const TriangleMethod method : {TriangleMethod::main, TriangleMethod::alternative}) {
+    double L[81];
+    triangle_sphere_light(9, method, triangle_sphere(p[0], p[1], p[2]), dvec3(0), L);
+    EXPECT_LT(worst_of_largest(L, exact.data(), 81), 1e-6) << int(method);
+  }
+}
+
+TEST(ShTriangleSpheres, alternative_keeps_the_solid_angle) {
+  const Polygon p = {{1000, 0, 1}, {-500, 800, 1}, {-500, -900, 1}};
+  double L[9];
+  triangle_sphere_light(3, TriangleMethod::alternative, triangle_sphere(p[0], p[1], p[2]), dvec3(0), L);
+  EXPECT_NEAR(L[0], light(1, p, dvec3(0))[0], 1e-14);
+}
+
+template <class T>
+void expect_defined() {
+  const Vec3<T> a(T(0.5), T(-0.3), 1), b(T(0.4), T(0.6), T(1.2)), c(T(-0.5), T(0.1), T(0.9));
+  for (const double size : {1e-30, 1.0, 1e30}) {
+    const T s = T(size);
+    const TriangleSphere<T> t = triangle_sphere(a * s, b * s, c * s);
+    for (const TriangleMethod method : kMethods) {
+      for (const Vec3<T> x : {t.center, t.center + t.normal * (T(0.1) * s), t.vertices[0], Vec3<T>(0),
+                              t.center + (t.vertices[0] - t.center) * T(3)}) {
+        T L[81];
+        Vec3<T> G[81];
+        triangle_sphere_light(9, method, t, x, L, G);
+        for (int i = 0; i < 81; ++i)
+          EXPECT_FALSE(std::isnan(L[i] + G[i].x + G[i].y + G[i].z)) << size << int(method);
+      }
+    }
+  }
+}
+TEST(ShTriangleSpheres, defined_inside_the_sphere_in_the_plane_and_at_any_size) {
+  expect_defined<float>();
+  expect_defined<double>();
+}
+
+template <class F>
+std::string refusal(F&& f) {
+  try {
+    f();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(ShCheckedLights, bad_input_is_named_with_its_value_and_range) {
+  const Vec3<float> x(0), y(1, 2, 3), nan(NAN, 0, 0);
+  float L[81];
+  EXPECT_EQ(refusal([&] { checked::sphere_light(9, x, y, -1.0f, L); }),
+            "radius is -1; it must be finite and above 0");
+  EXPECT_EQ(refusal([&] { checked::sphere_light(0, x, y, 1.0f, L); }),
+            "the number of bands is 0; it must be 1 to 101");
+  EXPECT_EQ(refusal([&] { checked::disk_light(102, x, y, 1.0f, L); }),
+            "the number of bands is 102; it must be 1 to 101");
+  EXPECT_EQ(refusal([&] { checked::sphere_light(3, nan, y, 1.0f, L); }),
+            "the point.x is nan; it must be finite");
+  EXPECT_NE(refusal([&] { checked::directional_light(3, x, 1.0f, L); }), "accepted");
+  EXPECT_NE(refusal([&] { checked::point_light(3, y, y, 1.0f, L); }), "accepted");
+  EXPECT_NE(refusal([&] { checked::ggx_zonal(3, GgxLobe::ndf, 0.0f, L); }), "accepted");
+  EXPECT_NE(refusal([&] { checked::cap_zonal(3, 4.0f, L); }), "accepted");
+  const Vec3<float> line[3] = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}}, good[3] = {{1, 1, 1}, {2, 2, 2}, {3, 3, 4}};
+  EXPECT_NE(refusal([&] { checked::polygon_light(3, 3, line, x, L); }), "accepted");
+  EXPECT_NE(refusal([&] { checked::polygon_light(3, 2, good, x, L); }), "accepted");
+  EXPECT_NE(refusal([&] { checked::polygon_light(3, 3, good, good[0], L); }), "accepted");
+  EXPECT_EQ(refusal([&] { checked::polygon_light(3, 3, good, x, L); }), "accepted");
+  EXPECT_EQ(refusal([&] { checked::sphere_light(9, x, y, 1.0f, L); }), "accepted");
 }
 
 }  // namespace
