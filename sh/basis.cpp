@@ -28,9 +28,13 @@ template <class T>
 Direction<T> direction(const Vec3<T>& d) {
   // |d|^2 - 1, accurate to the rounding of 1 - z^2: factors, because z^2 - 1 would cancel.
   const T excess = (d.z - 1) * (d.z + 1) + (d.x * d.x + d.y * d.y);
-  const T scale = -excess / (1 + excess + std::sqrt(1 + excess));  // 1/|d| - 1
-  const T x = d.x + d.x * scale, y = d.y + d.y * scale, z = d.z + d.z * scale;
-  return {x, y, z, (x * x + y * y) / (1 + std::abs(z)), std::copysign(T(1), z)};
+  // 1/|d| - 1: to second order where that is exact, since a root and two quotients cost as much as five
+  // bands.
+  const T scale = std::abs(excess) < T(1e-5) ? excess * (T(0.375) * excess - T(0.5))
+                                             : -excess / (1 + excess + std::sqrt(1 + excess));
+  const T up = std::abs(d.z);
+  return {d.x + d.x * scale, d.y + d.y * scale, d.z + d.z * scale, (1 - up) - up * scale,
+          std::copysign(T(1), d.z)};
 }
 
 /// Powers of x+iy, from exponent -2 (as 0) so that derivatives need no special cases.
@@ -74,9 +78,14 @@ T largest(const Vec3<T>& v) {
 /// Unit direction and 1/|v|.
 template <class T>
 Direction<T> direction(const Vec3<T>& v, T& inverse_length) {
-  T scale = largest(v);
-  Vec3<T> w = v / scale;  // within [-1, 1], one of them 1
-  T length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
+  const T square = v.x * v.x + v.y * v.y + v.z * v.z;
+  if (square > T(1e-20) && square < T(1e20)) {
+    inverse_length = 1 / std::sqrt(square);
+    return direction(Vec3<T>(v * inverse_length));
+  }
+  const T scale = largest(v);
+  const Vec3<T> w = v / scale;  // within [-1, 1], one of them 1
+  const T length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
   inverse_length =
       std::min(1 / length / scale, std::numeric_limits<T>::max());  // denormal v: large, not infinite
   return direction(Vec3<T>(w / length));
@@ -94,7 +103,7 @@ Vec3<T> normalized(const Vec3<T>& v) {
 template <class T>
 void evaluate(int bands, const Vec3<T>& unit, T* Y) {
   const Direction<T> d = direction(unit);
-  rows::evaluate<false>(bands, rows::Input<T>{d.x, d.y, std::abs(d.z), d.u, d.sign, T(1)}, Y, Y, Y, Y);
+  rows::evaluate_any<false>(bands, rows::Input<T>{d.x, d.y, std::abs(d.z), d.u, d.sign, T(1)}, Y, Y, Y, Y);
 }
 
 /// The polynomial p = q(z) Re (x+iy)^m has the gradient (m q C_{m-1}, -m q S_{m-1}, q' C_m). That of Y(v/|v|)
@@ -106,7 +115,7 @@ void evaluate_gradient(int bands, const Vec3<T>& v, T* Y, T* gradient_x, T* grad
   T inverse;
   const Direction<T> d = direction(v, inverse);
   const rows::Input<T> input{d.x, d.y, std::abs(d.z), d.u, d.sign, inverse};
-  rows::evaluate<true>(bands, input, Y, gradient_x, gradient_y, gradient_z);
+  rows::evaluate_any<true>(bands, input, Y, gradient_x, gradient_y, gradient_z);
 }
 
 template <class T>

@@ -134,17 +134,19 @@ struct Input {
 };
 
 /// Y and, if kGradient, the gradient's components, into arrays of count(bands).
-template <bool kGradient, class T>
+/// kCount is the number of packs, so that they stay in registers, or 0: as many as it takes.
+template <bool kGradient, int kCount, class T>
 ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T* gy, T* gz) {
   ZONAL_SH_ROWS_EXACT
   using V = Lanes<T>;
   constexpr int W = kWidth<T>;
   const auto& table = row_tables<T>();
-  const int packs = (bands - 1) / W + 1;
+  constexpr int kRoom = kCount > 0 ? kCount : kPacks<T>;
+  const int packs = kCount > 0 ? kCount : (bands - 1) / W + 1;
   const V zero = {};
 
   // Powers sign(z)^m (x+iy)^m: the first W by squaring, then W orders at a time.
-  V c[kPacks<T>], s[kPacks<T>], c1[kPacks<T>], s1[kPacks<T>], m_of[kPacks<T>];
+  V c[kRoom], s[kRoom], c1[kRoom], s1[kRoom], m_of[kRoom];
   const T xs = d.x * d.sign, ys = d.y * d.sign;
   T re[W + 1] = {1, xs}, im[W + 1] = {0, ys};
   for (int k = 2; k <= W; ++k) {
@@ -152,7 +154,9 @@ ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T*
     re[k] = re[a] * re[b] - im[a] * im[b];
     im[k] = re[a] * im[b] + im[a] * re[b];
   }
-  for (int k = 0; k < W; ++k) c[0][k] = re[k], s[0][k] = im[k], m_of[0][k] = T(k);
+  V c0 = {}, s0 = {}, m0 = {};
+  for (int k = 0; k < W; ++k) c0[k] = re[k], s0[k] = im[k], m0[k] = T(k);
+  c[0] = c0, s[0] = s0, m_of[0] = m0;
   for (int k = 1; k < packs; ++k) {
     c[k] = c[k - 1] * re[W] - s[k - 1] * im[W];
     s[k] = c[k - 1] * im[W] + s[k - 1] * re[W];
@@ -166,7 +170,7 @@ ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T*
     }
   }
 
-  V p[kPacks<T> + 1], change[kPacks<T>];
+  V p[kRoom + 1], change[kRoom];
   for (int k = 0; k <= packs; ++k) p[k] = zero + T(1);
   for (int k = 0; k < packs; ++k) change[k] = zero;
   const T rho2 = d.x * d.x + d.y * d.y;
@@ -176,12 +180,13 @@ ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T*
   for (int l = 0; l < bands; ++l, parity *= d.sign) {
     const auto* entry = table.entries[l];
     T* const middle = Y + l * (l + 1);
-    const int used = l / W + 1;
-    for (int k = 0; k < used; ++k) {
+    for (int k = 0; k < packs; ++k) {
+      if (k * W > l) break;
       change[k] = entry[k].fall * change[k] - entry[k].rise * p[k];
       p[k] += d.u * change[k];
     }
-    for (int k = 0; k < used; ++k) {
+    for (int k = 0; k < packs; ++k) {
+      if (k * W > l) break;
       const int first = k * W, n = l + 1 - first < W ? l + 1 - first : W;
       const V f = entry[k].norm * (p[k] * parity);
       store_orders<T>(middle, first, n, f * c[k], f * s[k]);
@@ -194,6 +199,20 @@ ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T*
       store_orders<T>(gy + row, first, n, -(f * s1[k]) - ry * c[k], f * c1[k] - ry * s[k]);
       store_orders<T>(gz + row, first, n, up * c[k], up * s[k]);
     }
+  }
+}
+
+template <bool kGradient, class T>
+void evaluate_any(int bands, const Input<T>& d, T* Y, T* gx, T* gy, T* gz) {
+  switch ((bands - 1) / kWidth<T>) {
+    case 0:
+      return evaluate<kGradient, 1>(bands, d, Y, gx, gy, gz);
+    case 1:
+      return evaluate<kGradient, 2>(bands, d, Y, gx, gy, gz);
+    case 2:
+      return evaluate<kGradient, 3>(bands, d, Y, gx, gy, gz);
+    default:
+      return evaluate<kGradient, 0>(bands, d, Y, gx, gy, gz);
   }
 }
 
