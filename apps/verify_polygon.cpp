@@ -34,21 +34,19 @@ double solid_angle_condition(const std::vector<dvec3>& v, const dvec3& x) {
   return 2 * kDelta * sum;
 }
 
-/// Relative change of the area vector when the differences v - x are rounded: 0 if they are exact, else a
-/// rounding of the largest against the polygon's height.
+/// Relative change of the area vector when the differences of vertices are rounded: a rounding of the
+/// farthest against the polygon's height.
 double area_condition(const std::vector<dvec3>& v, const dvec3& x) {
-  bool exact = true;
   double farthest = 0, longest = 0;
   dvec3 area(0);
   for (size_t i = 0; i < v.size(); ++i) {
     const dvec3 p = v[i] - x, edge = v[(i + 1) % v.size()] - v[i];
-    exact = exact && p + x == v[i] && v[i] - p == x;
     farthest = std::max(farthest, std::hypot(p.x, p.y, p.z));
     longest = std::max(longest, std::hypot(edge.x, edge.y, edge.z));
     if (i >= 2) area += glm::cross(v[i - 1] - v[0], v[i] - v[0]);
   }
   const double height = std::hypot(area.x, area.y, area.z) / longest;
-  return exact || !(height > 0) ? 0 : 4 * kDelta * farthest / height;
+  return !(height > 0) ? 0 : 4 * kDelta * farthest / height;
 }
 
 double largest(const std::vector<double>& values) {
