@@ -79,6 +79,11 @@ T largest(const Vec3<T>& v) {
 template <class T>
 Direction<T> direction(const Vec3<T>& v, T& inverse_length) {
   const T square = v.x * v.x + v.y * v.y + v.z * v.z;
+  if (std::abs(square - 1) < T(1e-6)) {  // unit already, the common case: no root
+    const Direction<T> d = direction(v);
+    inverse_length = 1 + (square - 1) * (T(0.375) * (square - 1) - T(0.5));
+    return d;
+  }
   if (square > T(1e-20) && square < T(1e20)) {
     inverse_length = 1 / std::sqrt(square);
     return direction(Vec3<T>(v * inverse_length));

@@ -79,14 +79,18 @@ alignas(64) inline constexpr int kMask[16] = {-1, -1, -1, -1, -1, -1, -1, -1, 0,
 
 /// Lanes 0..n-1 of v to p, n in 1..W.
 ZONAL_SH_ROWS_INLINE void store_first(float* p, const Lanes<float>& v, int n) {
-#if defined(__AVX__)
+#if defined(__AVX512VL__)
+  _mm256_mask_storeu_ps(p, __mmask8((1 << n) - 1), v);
+#elif defined(__AVX__)
   _mm256_maskstore_ps(p, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMask + 8 - n)), v);
 #else
   for (int k = 0; k < n; ++k) p[k] = v[k];
 #endif
 }
 ZONAL_SH_ROWS_INLINE void store_first(double* p, const Lanes<double>& v, int n) {
-#if defined(__AVX__)
+#if defined(__AVX512VL__)
+  _mm256_mask_storeu_pd(p, __mmask8((1 << n) - 1), v);
+#elif defined(__AVX__)
   _mm256_maskstore_pd(p, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMask + 8 - 2 * n)), v);
 #else
   for (int k = 0; k < n; ++k) p[k] = v[k];
@@ -94,7 +98,9 @@ ZONAL_SH_ROWS_INLINE void store_first(double* p, const Lanes<double>& v, int n) 
 }
 /// Lanes W-n..W-1 of v to where they lie in p[0..W-1].
 ZONAL_SH_ROWS_INLINE void store_last(float* p, const Lanes<float>& v, int n) {
-#if defined(__AVX__)
+#if defined(__AVX512VL__)
+  _mm256_mask_storeu_ps(p, __mmask8((1 << 8) - (1 << (8 - n))), v);
+#elif defined(__AVX__)
   const __m256i skipped = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMask + n));
   _mm256_maskstore_ps(p, _mm256_xor_si256(skipped, _mm256_set1_epi32(-1)), v);
 #else
@@ -102,7 +108,9 @@ ZONAL_SH_ROWS_INLINE void store_last(float* p, const Lanes<float>& v, int n) {
 #endif
 }
 ZONAL_SH_ROWS_INLINE void store_last(double* p, const Lanes<double>& v, int n) {
-#if defined(__AVX__)
+#if defined(__AVX512VL__)
+  _mm256_mask_storeu_pd(p, __mmask8((1 << 4) - (1 << (4 - n))), v);
+#elif defined(__AVX__)
   const __m256i skipped = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kMask + 2 * n));
   _mm256_maskstore_pd(p, _mm256_xor_si256(skipped, _mm256_set1_epi32(-1)), v);
 #else
