@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sh/disk_light.h"
+#include "sh/seen_cap_unrolled.h"
 #include "sh/seen_distance.h"
 
 // Compiled without reassociation: the sums below carry their own rounding errors.
@@ -95,6 +96,22 @@ SeenCap<T> see_disk(T d, T r) {
 }
 
 template <class T>
+void sphere_light(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L) {
+  if constexpr (std::is_same_v<T, float>) {
+    // Few bands in float: nothing but what the coefficients need, the roots where they are cheap.
+    const Vec3<double> w = Vec3<double>(y) - Vec3<double>(x);
+    const double d2 = w.x * w.x + w.y * w.y + w.z * w.z, r2 = double(r) * r, inverse_d2 = 1 / d2;
+    if (bands <= 10 && d2 > r2) {
+      const float sine2 = float(r2 * inverse_d2), cosine = std::sqrt(float((d2 - r2) * inverse_d2));
+      const Vec3<float> axis(w * std::sqrt(inverse_d2));
+      seen_cap_few_bands<float>(bands, axis, {sine2 / (1 + cosine), sine2}, L);
+      return;
+    }
+  }
+  seen_cap(bands, see_sphere(x, y, r), L);
+}
+
+template <class T>
 void sphere_light_zonal(int bands, T d, T r, T* z, T* dz_dd, T* d2z_dd2) {
   chain_to_distance(bands, see_sphere(d, r), z, dz_dd, d2z_dd2);
 }
@@ -104,12 +121,13 @@ void disk_light_zonal(int bands, T d, T r, T* z, T* dz_dd, T* d2z_dd2) {
   chain_to_distance(bands, see_disk(d, r), z, dz_dd, d2z_dd2);
 }
 
-#define ZONAL_INSTANTIATE(T)                                            \
-  template SeenCap<T> see_sphere<T>(const Vec3<T>&, const Vec3<T>&, T); \
-  template SeenCap<T> see_sphere<T>(T, T);                              \
-  template SeenCap<T> see_disk<T>(const Vec3<T>&, const Vec3<T>&, T);   \
-  template SeenCap<T> see_disk<T>(T, T);                                \
-  template void sphere_light_zonal<T>(int, T, T, T*, T*, T*);           \
+#define ZONAL_INSTANTIATE(T)                                                 \
+  template SeenCap<T> see_sphere<T>(const Vec3<T>&, const Vec3<T>&, T);      \
+  template SeenCap<T> see_sphere<T>(T, T);                                   \
+  template SeenCap<T> see_disk<T>(const Vec3<T>&, const Vec3<T>&, T);        \
+  template SeenCap<T> see_disk<T>(T, T);                                     \
+  template void sphere_light<T>(int, const Vec3<T>&, const Vec3<T>&, T, T*); \
+  template void sphere_light_zonal<T>(int, T, T, T*, T*, T*);                \
   template void disk_light_zonal<T>(int, T, T, T*, T*, T*);
 ZONAL_INSTANTIATE(float)
 ZONAL_INSTANTIATE(double)

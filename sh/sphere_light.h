@@ -29,9 +29,7 @@ void sphere_light_zonal(int bands, T d, T r, T* z, T* dz_dd = nullptr, T* d2z_dd
 
 /// SH coefficients, gradient and Hessian with respect to x. Arrays of count(bands).
 template <class T>
-void sphere_light(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L) {
-  seen_cap(bands, see_sphere(x, y, r), L);
-}
+void sphere_light(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L);
 template <class T>
 void sphere_light_gradient(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L, Vec3<T>* gradient) {
   seen_cap_gradient(bands, see_sphere(x, y, r), L, gradient);

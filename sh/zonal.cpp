@@ -1,5 +1,6 @@
 #include "sh/zonal.h"
 
+#include "sh/seen_cap_unrolled.h"
 #include "sh/zonal_lanes.h"
 
 namespace zonal::sh {
@@ -111,67 +112,9 @@ void rotate_zonal_batch(int bands, int n, const T* z, const T* x, const T* y, co
   }
 }
 
-/// Basis and gains in one, unrolled. The recurrences are those of tables.h and CapRecurrence.
-template <int N, class T>
-void seen_cap_unrolled(const SeenCap<T>& seen, T* L) {
-  static const Tables<T>& table = tables<T>();
-  const T sign = std::copysign(T(1), seen.axis.z);
-  const T x = seen.axis.x * sign, y = seen.axis.y * sign;
-  const T u = (x * x + y * y) / (1 + std::abs(seen.axis.z));
-  T gain[N];  // times sign^l
-  gain[0] = T(2 * kPi) * seen.cap.versine;
-  CapRecurrence<T> r(seen.cap.versine);
-  T scale = T(kPi) * seen.cap.sine2 * sign;
-#pragma GCC unroll 16
-  for (int l = 1; l < N; ++l) {
-    r.step_q(l);
-    gain[l] = scale * r.q;
-    scale *= sign;
-  }
-  T c = 1, s = 0;
-#pragma GCC unroll 16
-  for (int m = 0; m < N; ++m) {
-    const Step<T>* step = table.column(m) - m;
-    T p = 1, e = 0;
-#pragma GCC unroll 16
-    for (int l = m; l < N; ++l) {
-      if (l > m) {
-        e = step[l].fall * e - step[l].rise * p;
-        p += u * e;
-      }
-      const T X = gain[l] * step[l].norm * p;
-      L[index(l, m)] = X * c;
-      if (m > 0) L[index(l, -m)] = X * s;
-    }
-    const T next = x * c - y * s;
-    s = x * s + y * c, c = next;
-  }
-}
-
 template <class T>
 void seen_cap(int bands, const SeenCap<T>& seen, T* L) {
-  switch (bands) {
-    case 2:
-      return seen_cap_unrolled<2>(seen, L);
-    case 3:
-      return seen_cap_unrolled<3>(seen, L);
-    case 4:
-      return seen_cap_unrolled<4>(seen, L);
-    case 5:
-      return seen_cap_unrolled<5>(seen, L);
-    case 6:
-      return seen_cap_unrolled<6>(seen, L);
-    case 7:
-      return seen_cap_unrolled<7>(seen, L);
-    case 8:
-      return seen_cap_unrolled<8>(seen, L);
-    case 9:
-      return seen_cap_unrolled<9>(seen, L);
-    case 10:
-      return seen_cap_unrolled<10>(seen, L);
-    default:
-      break;
-  }
+  if (seen_cap_few_bands(bands, seen.axis, seen.cap, L)) return;
   evaluate(bands, seen.axis, L);
   // A seen cap is at most a hemisphere: no mirror, and the gains need no array.
   CapRecurrence<T> r(seen.cap.versine);

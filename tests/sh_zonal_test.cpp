@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/glsl.h"
 #include "sh/disk_light.h"
 #include "sh/ggx_lobe.h"
 #include "sh/light_batch.h"
@@ -14,6 +15,12 @@
 
 namespace zonal::sh {
 namespace {
+
+// The shaders' text, in a namespace of its own: C++'s functions have the same names.
+namespace shader {
+#include "sh/attenuation.glsl"
+#include "sh/sphere_light.glsl"
+}  // namespace shader
 
 using nlohmann::json;
 using dvec3 = Vec3<double>;
@@ -387,6 +394,64 @@ TEST(ShZonal, directional_light_is_the_basis_against_its_travel) {
   directional_light(4, d, 3.0, L);
   evaluate(4, -d, Y);
   for (int i = 0; i < 16; ++i) EXPECT_DOUBLE_EQ(L[i], 3 * Y[i]);
+}
+
+TEST(ShZonal, shader_kernels_equal_the_library) {
+  for (const float ratio : {1e-6f, 0.01f, 0.3f, 0.9f, 1.5f}) {
+    const float d = 2.5f, r = ratio * d;
+    for (const bool disk : {false, true}) {
+      const SeenCap<double> seen = disk ? see_disk(double(d), double(r)) : see_sphere(double(d), double(r));
+      double g[20], slope[20];
+      cap_gains(20, seen.cap, g, slope);
+      const shader::ZonalCap cap = disk ? shader::disk_cap(d * d, r) : shader::sphere_cap(d * d, r);
+      EXPECT_NEAR(cap.dt, seen.dt, 2e-6 * std::abs(seen.dt)) << ratio;
+      shader::CapBand band = shader::cap_first(cap);
+      for (int l = 0; l < 20; ++l) {
+        if (l > 0) band = shader::cap_next(cap, band, l);
+        EXPECT_NEAR(band.gain, g[l], 2e-6 * g[0]) << ratio << " " << l;
+        EXPECT_NEAR(band.slope, slope[l], 2e-5) << ratio << " " << l;
+      }
+    }
+  }
+  const vec3 w(0.3f, -0.4f, 1.2f);
+  vec3 gradient;
+  EXPECT_FLOAT_EQ(shader::inverse_square_attenuation(w, gradient), inverse_square(w).value);
+  EXPECT_NEAR(gradient.z, inverse_square(w).gradient.z, 1e-6);
+  EXPECT_FLOAT_EQ(shader::yuksel_attenuation(w, 0.2f, gradient), yuksel(w, 0.2f).value);
+  EXPECT_NEAR(gradient.y, yuksel(w, 0.2f).gradient.y, 1e-6);
+}
+
+// Coefficients alone, where float takes a path of its own; the truth is double at the same float inputs.
+TEST(ShZonal, float_coefficients_hold_their_bar_at_any_size_and_place) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (const double ratio : {0.999, 0.9, 0.3, 1e-2, 1e-4, 1e-8}) {
+    for (int k = 0; k < 200; ++k) {
+      const Vec3<float> x(uniform(random), uniform(random), uniform(random));
+      Vec3<float> y(uniform(random), uniform(random), uniform(random));
+      if (k % 4 == 0) y.x = x.x + 1e-6f * uniform(random), y.y = x.y;  // near a pole
+      const float r = float(ratio * glm::length(dvec3(y) - dvec3(x)));
+      for (const int bands : {3, 6, 9, 10}) {
+        float L[100];
+        double truth[100];
+        sphere_light(bands, x, y, r, L);
+        sphere_light(bands, dvec3(x), dvec3(y), double(r), truth);
+        EXPECT_LT(worst_of_largest(L, truth, count(bands)), 2e-6) << ratio << " " << bands << " " << k;
+      }
+    }
+  }
+}
+
+TEST(ShZonal, attenuation_batches_equal_single_ones) {
+  const float x[3] = {1, 0, -2}, y[3] = {0.5f, 0, 1}, z[3] = {2, 0, 0}, r[3] = {0.1f, 0.2f, 3};
+  float a[3], gx[3], gy[3], gz[3];
+  inverse_square_batch(3, x, y, z, a, gx, gy, gz);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(gx[i], inverse_square(Vec3<float>(x[i], y[i], z[i])).gradient.x, 1e-6);
+  yuksel_batch(3, x, y, z, r, a, gx, gy, gz);
+  for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(a[i], yuksel(Vec3<float>(x[i], y[i], z[i]), r[i]).value);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(gy[i], yuksel(Vec3<float>(x[i], y[i], z[i]), r[i]).gradient.y, 1e-6);
 }
 
 }  // namespace
