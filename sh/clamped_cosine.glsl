@@ -1,13 +1,7 @@
 // The product with max(0, cos theta) about z, up to 10 bands (Mézières 2022, Eq. 4.6): the integral of Y_l1^m max(0, z)
 // Y_l2^m is 0 unless l1 + l2 is even or |l1 - l2| = 1, and the same for m and -m. Light is in the frame of the normal.
-// The irradiance is 2 sqrt(pi) c[0] of the product (Eq. 4.4). The table needs GLSL 4.20 for its braces.
-
-#ifndef ZONAL_SH_VECTOR10
-#define ZONAL_SH_VECTOR10
-struct ShVector10 {
-  float c[100];  // index l(l+1)+m
-};
-#endif
+// The irradiance is 2 sqrt(pi) c[0] of the product (Eq. 4.4). The table needs GLSL 4.20 for its braces; include sh/basis.glsl
+// first, for ShCoefficients.
 
 // Order by order, m = 0..9; for each l1 = m..9 its l2 = l1, l1 + 1, l1 + 2, l1 + 4, l1 + 6, ... up to 9. A test compares
 // them with sh/clamped_cosine.cpp.
@@ -70,7 +64,7 @@ KERNEL float sh_clamped_cosine(int l1, int l2, int m) {
 }
 
 // All coefficients below `bands` <= 10; the rest of `product` is 0.
-KERNEL void sh_clamped_cosine_product(int bands, ShVector10 light, OUT(ShVector10) product) {
+KERNEL void sh_clamped_cosine_product(int bands, ShCoefficients light, OUT(ShCoefficients) product) {
   for (int i = 0; i < 100; ++i) product.c[i] = 0.0f;
   for (int m = 0; m < bands; ++m) {
     int at = kShClampedCosineStart[m];

@@ -21,6 +21,8 @@ namespace {
 
 namespace kernel {
 using namespace zonal;
+#include "sh/basis.glsl"
+// After the basis, for ShCoefficients.
 #include "sh/clamped_cosine.glsl"
 }  // namespace kernel
 
@@ -292,7 +294,7 @@ TEST(sh_products, shader_kernel_of_the_clamped_cosine_is_the_same_at_every_size)
     const std::vector<float> f = random_vector<float>(count(bands), 53);
     std::vector<float> expected(f.size());
     clamped_cosine_product(bands, f.data(), expected.data());
-    kernel::ShVector10 light{}, product;
+    kernel::ShCoefficients light{}, product;
     std::copy(f.begin(), f.end(), light.c);
     kernel::sh_clamped_cosine_product(bands, light, product);
     for (int l = 0; l < bands; ++l)
