@@ -25,7 +25,7 @@ struct Direction {
 };
 
 template <class T>
-Direction<T> direction(const Vec3<T>& d) {
+ZONAL_SH_ROWS_INLINE Direction<T> direction(const Vec3<T>& d) {
   // |d|^2 - 1, accurate to the rounding of 1 - z^2: factors, because z^2 - 1 would cancel.
   const T excess = (d.z - 1) * (d.z + 1) + (d.x * d.x + d.y * d.y);
   // 1/|d| - 1: to second order where that is exact, since a root and two quotients cost as much as five
@@ -77,7 +77,7 @@ T largest(const Vec3<T>& v) {
 
 /// Unit direction and 1/|v|.
 template <class T>
-Direction<T> direction(const Vec3<T>& v, T& inverse_length) {
+ZONAL_SH_ROWS_INLINE Direction<T> direction(const Vec3<T>& v, T& inverse_length) {
   const T square = v.x * v.x + v.y * v.y + v.z * v.z;
   if (std::abs(square - 1) < T(1e-6)) {  // unit already, the common case: no root
     const Direction<T> d = direction(v);

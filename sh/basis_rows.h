@@ -13,8 +13,10 @@
 
 #ifdef __clang__
 #define ZONAL_SH_ROWS_EXACT _Pragma("clang fp reassociate(off)")
+#define ZONAL_SH_ROWS_UNROLL _Pragma("clang loop unroll_count(kCount > 0 ? 4 : 1)")
 #else
 #define ZONAL_SH_ROWS_EXACT
+#define ZONAL_SH_ROWS_UNROLL
 #endif
 #define ZONAL_SH_ROWS_INLINE inline __attribute__((always_inline))
 
@@ -185,33 +187,35 @@ ZONAL_SH_ROWS_INLINE void evaluate(int bands, const Input<T>& d, T* Y, T* gx, T*
   const T x = d.x * d.inverse, y = d.y * d.inverse, z = d.z * d.sign * d.inverse,
           flat = rho2 * d.sign * d.inverse;
   T parity = 1;
-  for (int l = 0; l < bands; ++l, parity *= d.sign) {
-    const auto* entry = table.entries[l];
-    T* const middle = Y + l * (l + 1);
-    for (int k = 0; k < packs; ++k) {
-      if (k * W > l) break;
-      change[k] = entry[k].fall * change[k] - entry[k].rise * p[k];
-      p[k] += d.u * change[k];
-    }
-    for (int k = 0; k < packs; ++k) {
-      if (k * W > l) break;
-      const int first = k * W, n = l + 1 - first < W ? l + 1 - first : W;
-      const V f = entry[k].norm * (p[k] * parity);
-      store_orders<T>(middle, first, n, f * c[k], f * s[k]);
-      if (!kGradient) continue;
-      const V df = entry[k].slope * (from_next(p[k], p[k + 1]) * parity);  // without the sign of z
-      const V radial = m_of[k] * f + d.z * df, rx = radial * x, ry = radial * y;
-      const V up = flat * df - (m_of[k] * z) * f;
+  // Rows of one pack, then those of two, and so on: only the last of a row is cut short.
+  ZONAL_SH_ROWS_UNROLL
+  for (int last = 0; last < packs; ++last) {
+    const int end = bands < (last + 1) * W ? bands : (last + 1) * W;
+    for (int l = last * W; l < end; ++l, parity *= d.sign) {
+      const auto* entry = table.entries[l];
       const std::ptrdiff_t row = l * (l + 1);
-      store_orders<T>(gx + row, first, n, f * c1[k] - rx * c[k], f * s1[k] - rx * s[k]);
-      store_orders<T>(gy + row, first, n, -(f * s1[k]) - ry * c[k], f * c1[k] - ry * s[k]);
-      store_orders<T>(gz + row, first, n, up * c[k], up * s[k]);
+      for (int k = 0; k <= last; ++k) {
+        change[k] = entry[k].fall * change[k] - entry[k].rise * p[k];
+        p[k] += d.u * change[k];
+      }
+      for (int k = 0; k <= last; ++k) {
+        const int first = k * W, n = k < last ? W : l + 1 - first;
+        const V f = entry[k].norm * (p[k] * parity);
+        store_orders<T>(Y + row, first, n, f * c[k], f * s[k]);
+        if (!kGradient) continue;
+        const V df = entry[k].slope * (from_next(p[k], p[k + 1]) * parity);  // without the sign of z
+        const V radial = m_of[k] * f + d.z * df, rx = radial * x, ry = radial * y;
+        const V up = flat * df - (m_of[k] * z) * f;
+        store_orders<T>(gx + row, first, n, f * c1[k] - rx * c[k], f * s1[k] - rx * s[k]);
+        store_orders<T>(gy + row, first, n, -(f * s1[k]) - ry * c[k], f * c1[k] - ry * s[k]);
+        store_orders<T>(gz + row, first, n, up * c[k], up * s[k]);
+      }
     }
   }
 }
 
 template <bool kGradient, class T>
-void evaluate_any(int bands, const Input<T>& d, T* Y, T* gx, T* gy, T* gz) {
+ZONAL_SH_ROWS_INLINE void evaluate_any(int bands, const Input<T>& d, T* Y, T* gx, T* gy, T* gz) {
   switch ((bands - 1) / kWidth<T>) {
     case 0:
       return evaluate<kGradient, 1>(bands, d, Y, gx, gy, gz);
