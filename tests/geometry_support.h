@@ -9,9 +9,9 @@
 
 namespace zonal::test {
 
-class Random {
+class HashRandom {
  public:
-  explicit Random(uint32_t seed) : seed_(seed) {}
+  explicit HashRandom(uint32_t seed) : seed_(seed) {}
   uint32_t bits() { return hash32(seed_, count_++); }
   float number() { return unit_float(bits()); }
   vec3 vector() { return {number(), number(), number()}; }  ///< in the unit cube
@@ -50,7 +50,7 @@ inline ShapeData box(vec3 low, vec3 high) {
 }
 
 /// Triangles of about half a metre in and around the unit cube.
-inline ShapeData triangle_soup(int count, Random& random) {
+inline ShapeData triangle_soup(int count, HashRandom& random) {
   ShapeData s;
   s.name = "soup";
   for (uint32_t i = 0; i < uint32_t(count); ++i) {

@@ -19,7 +19,7 @@ TEST(Scene, a_ray_meets_a_sphere_where_the_quadratic_says) {
     const vec3 center = scale * vec3(0.3f, -0.2f, 0.5f);
     const float radius = 0.7f * scale;
     const Scene scene(sphere_scene(center, radius));
-    Random random(1);
+    HashRandom random(1);
     int found = 0;
     for (int i = 0; i < 20000; ++i) {
       const vec3 origin = scale * 3.0f * (random.vector() - 0.5f), w = random.direction();
@@ -52,7 +52,7 @@ TEST(Scene, a_ray_meets_a_sphere_where_the_quadratic_says) {
 }
 
 TEST(Scene, nearest_hits_and_all_hits_agree_with_brute_force) {
-  Random random(2);
+  HashRandom random(2);
   const ShapeData soup = triangle_soup(300, random);
   SceneParts parts;
   parts.shapes.push_back(soup);
@@ -115,7 +115,7 @@ TEST(Scene, a_triangles_surface_interpolates_position_normal_and_uv) {
 
 TEST(Scene, shading_normals_never_face_away_from_the_viewer) {
   // Vertex normals that point anywhere at all.
-  Random random(3);
+  HashRandom random(3);
   ShapeData soup = triangle_soup(200, random);
   for (size_t i = 0; i < soup.mesh.positions.size(); ++i) soup.mesh.normals.push_back(random.direction());
   const Scene scene(one_shape(soup));
@@ -191,7 +191,7 @@ TEST(Scene, masks_let_rays_through_where_they_cut) {
 }
 
 TEST(Scene, eight_shadow_rays_at_once_equal_eight_single_ones) {
-  Random random(4);
+  HashRandom random(4);
   const Scene scene(one_shape(triangle_soup(300, random)));
   int blocked = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -267,7 +267,7 @@ TEST(Scene, an_empty_scene_misses_every_ray) {
 TEST(Scene, the_bounding_sphere_is_the_smallest_one_and_turns_with_the_scene) {
   // A box's smallest sphere has its diagonal for a diameter. Allowed: 0.1 % too large.
   const float truth = 0.5f * length(vec3(2, 3, 5));
-  Random random(5);
+  HashRandom random(5);
   for (int turn = 0; turn < 20; ++turn) {
     const Frame frame(random.direction());
     ShapeData shape = box({-1, 0, 0}, {1, 3, 5});

@@ -11,7 +11,7 @@ namespace {
 
 /// Shoots rays at a convex shape from outside, then on from the hit to the side the ray came from: nothing
 /// can be there. Returns how many of them met something all the same.
-int self_hits(const Scene& scene, vec3 center, float size, int rays, Random& random) {
+int self_hits(const Scene& scene, vec3 center, float size, int rays, HashRandom& random) {
   int wrong = 0, tried = 0;
   for (int i = 0; i < rays; ++i) {
     const vec3 origin = center + 3 * size * random.direction();
@@ -36,7 +36,7 @@ int self_hits(const Scene& scene, vec3 center, float size, int rays, Random& ran
 }  // namespace
 
 TEST(SelfShadow, a_single_triangle_of_any_size_and_place_never_shadows_itself) {
-  Random random(11);
+  HashRandom random(11);
   for (const float size : {1e-3f, 1.0f, 1e4f}) {
     for (const float distance : {0.0f, 1.0f, 1e2f}) {
       for (int i = 0; i < 20; ++i) {
@@ -76,7 +76,7 @@ TEST(SelfShadow, a_single_triangle_of_any_size_and_place_never_shadows_itself) {
 }
 
 TEST(SelfShadow, convex_shapes_never_shadow_themselves) {
-  Random random(12);
+  HashRandom random(12);
   for (const float size : {1e-3f, 1.0f, 1e4f}) {
     for (const float distance : {0.0f, 10.0f}) {
       const vec3 center = distance * size * random.direction();
@@ -94,7 +94,7 @@ TEST(SelfShadow, a_ball_of_ten_kilometres_under_the_origin_is_flat_ground) {
   // The surface near the origin has small coordinates and a large radius: an offset scaled by position alone
   // fails.
   const Scene scene(sphere_scene({0, -1e4f, 0}, 1e4f));
-  Random random(13);
+  HashRandom random(13);
   int wrong = 0;
   for (int i = 0; i < 20000; ++i) {
     const vec3 origin = vec3(0, 2, 0) + random.vector(),
@@ -127,7 +127,7 @@ TEST(SelfShadow, a_lamp_standing_on_the_floor_lights_the_floor_beside_it) {
     // An upright lamp, its lower edge on the floor, facing +z.
     parts.shapes.push_back(quad({0, 0, 0}, scale * vec3(1, 0, 0), scale * vec3(0, 1, 0)));
     const Scene scene(std::move(parts));
-    Random random(14);
+    HashRandom random(14);
     int wrong = 0;
     for (int i = 0; i < 20000; ++i) {
       const vec3 below = scale * vec3(random.number(), 0, 0.001f + random.number());
@@ -144,7 +144,7 @@ TEST(SelfShadow, a_closed_room_does_not_leak) {
   // Rays aimed at the shared edges and corners of a box from inside, at a place where floats are coarse.
   const vec3 center(100.3f, -57.1f, 33.7f);
   const Scene scene(one_shape(box(center - 0.5f, center + 0.5f)));
-  Random random(15);
+  HashRandom random(15);
   for (int i = 0; i < 200000; ++i) {
     const vec3 origin = center + 0.9f * (random.vector() - 0.5f);
     vec3 target = random.vector() - 0.5f;
