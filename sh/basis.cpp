@@ -70,9 +70,14 @@ void legendre_column(int bands, int m, const Direction<T>& d, T* p) {
   }
 }
 
+/// v times a power of two, and that over its largest component: within [-1, 1], one of them 1. The power
+/// keeps 1/scale a normal number, which a quotient may be computed with.
 template <class T>
-T largest(const Vec3<T>& v) {
-  return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+Vec3<T> scaled(const Vec3<T>& v, T& power, T& scale) {
+  scale = std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+  power = scale < T(1e-20) ? T(0x1p66) : scale > T(1e20) ? T(0x1p-66) : T(1);
+  scale *= power;
+  return v * power / scale;
 }
 
 /// Unit direction and 1/|v|.
@@ -88,11 +93,11 @@ ZONAL_SH_ROWS_INLINE Direction<T> direction(const Vec3<T>& v, T& inverse_length)
     inverse_length = 1 / std::sqrt(square);
     return direction(Vec3<T>(v * inverse_length));
   }
-  const T scale = largest(v);
-  const Vec3<T> w = v / scale;  // within [-1, 1], one of them 1
+  T power, scale;
+  const Vec3<T> w = scaled(v, power, scale);
   const T length = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
   inverse_length =
-      std::min(1 / length / scale, std::numeric_limits<T>::max());  // denormal v: large, not infinite
+      std::min(1 / length / scale * power, std::numeric_limits<T>::max());  // denormal v: large, not infinite
   return direction(Vec3<T>(w / length));
 }
 
@@ -100,8 +105,8 @@ ZONAL_SH_ROWS_INLINE Direction<T> direction(const Vec3<T>& v, T& inverse_length)
 
 template <class T>
 Vec3<T> normalized(const Vec3<T>& v) {
-  T scale = largest(v);
-  Vec3<T> w = v / scale;
+  T power, scale;
+  const Vec3<T> w = scaled(v, power, scale);
   return w / std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
 }
 

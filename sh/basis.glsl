@@ -1,6 +1,7 @@
-// Spherical harmonics for shaders: up to 10 bands (l = 0..9), basis, gradient and dot product. Conventions of sh/basis.h:
-// index l(l+1)+m, Condon-Shortley phase inside. The recurrence is that of sh/tables.h, in differences from the pole, so that
-// float loses nothing near it; q_m^m(1) starts at sqrt(1/4pi) and takes -sqrt((2m+1)/(2m)), with sqrt(2) once. Equation numbers: Mezieres 2022.
+// Spherical harmonics for shaders: up to 10 bands (l = 0..9), basis, gradient and dot product. Conventions of
+// sh/basis.h: index l(l+1)+m, Condon-Shortley phase inside. The recurrence is that of sh/tables.h, in differences
+// from the pole, so that float loses nothing near it; q_m^m(1) starts at sqrt(1/4pi) and takes -sqrt((2m+1)/(2m)),
+// with sqrt(2) once. Equation numbers: Mezieres 2022.
 
 const int SH_MAX_BANDS = 10;
 const int SH_MAX_COUNT = 100;

@@ -20,6 +20,11 @@
 #endif
 #define ZONAL_SH_ROWS_INLINE inline __attribute__((always_inline))
 
+// Packs are passed to functions that are always inlined; what their calling convention would be does not
+// matter.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 namespace zonal::sh::rows {
 
 template <class T>
@@ -229,3 +234,5 @@ ZONAL_SH_ROWS_INLINE void evaluate_any(int bands, const Input<T>& d, T* Y, T* gx
 }
 
 }  // namespace zonal::sh::rows
+
+#pragma GCC diagnostic pop

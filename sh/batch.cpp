@@ -17,10 +17,12 @@ struct Normalized {
       const int from = k < lanes ? k : lanes - 1;
       const T vx = px[from], vy = py[from], vz = pz[from];
       const T scale = std::max(std::abs(vx), std::max(std::abs(vy), std::abs(vz)));
-      const T a = vx / scale, b = vy / scale, c = vz / scale;
+      // A power of two first, so that 1/scale is a normal number.
+      const T power = scale < T(1e-20) ? T(0x1p66) : scale > T(1e20) ? T(0x1p-66) : T(1), top = scale * power;
+      const T a = vx * power / top, b = vy * power / top, c = vz * power / top;
       const T length = std::sqrt(a * a + b * b + c * c);
       x[k] = a / length, y[k] = b / length, z[k] = c / length;
-      inverse[k] = std::min(1 / length / scale, std::numeric_limits<T>::max());
+      inverse[k] = std::min(1 / length / top * power, std::numeric_limits<T>::max());
     }
   }
 };
