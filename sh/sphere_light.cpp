@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sh/disk_light.h"
+#include "sh/few_bands.h"
 #include "sh/seen_cap_unrolled.h"
 #include "sh/seen_distance.h"
 
@@ -62,6 +63,40 @@ void chain_to_distance(int bands, const SeenCap<T>& seen, T* z, T* dz_dd, T* d2z
   }
 }
 
+/// Any sphere, any number of bands.
+template <class T>
+[[gnu::noinline]] void sphere_many_bands(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L) {
+  if constexpr (std::is_same_v<T, float>) {
+    // Nothing but what the coefficients need, the roots where they are cheap.
+    const Vec3<double> w = Vec3<double>(y) - Vec3<double>(x);
+    const double d2 = w.x * w.x + w.y * w.y + w.z * w.z, r2 = double(r) * r, inverse_d2 = 1 / d2;
+    if (bands <= 10 && d2 > r2) {
+      const float sine2 = float(r2 * inverse_d2), cosine = std::sqrt(float((d2 - r2) * inverse_d2));
+      const Vec3<float> axis(w * std::sqrt(inverse_d2));
+      seen_cap_few_bands<float>(bands, axis, {sine2 / (1 + cosine), sine2}, L);
+      return;
+    }
+  }
+  seen_cap(bands, see_sphere(x, y, r), L);
+}
+
+/// False, and nothing done, for spheres that are near, or of extreme size.
+template <int N>
+[[gnu::always_inline]] inline bool sphere_few_bands(const Vec3<float>& x, const Vec3<float>& y, float r,
+                                                    float* __restrict__ L) {
+  const float wx = y.x - x.x, wy = y.y - x.y, wz = y.z - x.z;
+  const float xy2 = wx * wx + wy * wy, d2 = xy2 + wz * wz;
+  const float inverse = 1 / std::sqrt(d2), ratio = r * inverse, sine2 = ratio * ratio;
+  if (!(sine2 < kFewSine2 && d2 > kFewLeast && d2 < kFewMost)) return false;
+  float gain[N];
+  few_gains<N, float>(sine2, std::sqrt(1 - sine2), gain);
+  const float z = wz * inverse, s2 = few_sine2(z, xy2 * inverse * inverse);
+  few_bands<N, float>(
+      wx * inverse, wy * inverse, z, s2,
+      gain, [&](int i, float v) __attribute__((always_inline)) { L[i] = v; });
+  return true;
+}
+
 }  // namespace
 
 template <class T>
@@ -98,17 +133,30 @@ SeenCap<T> see_disk(T d, T r) {
 template <class T>
 void sphere_light(int bands, const Vec3<T>& x, const Vec3<T>& y, T r, T* L) {
   if constexpr (std::is_same_v<T, float>) {
-    // Few bands in float: nothing but what the coefficients need, the roots where they are cheap.
-    const Vec3<double> w = Vec3<double>(y) - Vec3<double>(x);
-    const double d2 = w.x * w.x + w.y * w.y + w.z * w.z, r2 = double(r) * r, inverse_d2 = 1 / d2;
-    if (bands <= 10 && d2 > r2) {
-      const float sine2 = float(r2 * inverse_d2), cosine = std::sqrt(float((d2 - r2) * inverse_d2));
-      const Vec3<float> axis(w * std::sqrt(inverse_d2));
-      seen_cap_few_bands<float>(bands, axis, {sine2 / (1 + cosine), sine2}, L);
-      return;
+    switch (bands) {
+      case 1:
+        if (sphere_few_bands<1>(x, y, r, L)) return;
+        break;
+      case 2:
+        if (sphere_few_bands<2>(x, y, r, L)) return;
+        break;
+      case 3:
+        if (sphere_few_bands<3>(x, y, r, L)) return;
+        break;
+      case 4:
+        if (sphere_few_bands<4>(x, y, r, L)) return;
+        break;
+      case 5:
+        if (sphere_few_bands<5>(x, y, r, L)) return;
+        break;
+      case 6:
+        if (sphere_few_bands<6>(x, y, r, L)) return;
+        break;
+      default:
+        break;
     }
   }
-  seen_cap(bands, see_sphere(x, y, r), L);
+  sphere_many_bands(bands, x, y, r, L);
 }
 
 template <class T>
