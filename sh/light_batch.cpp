@@ -1,8 +1,10 @@
 #include "sh/light_batch.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
+#include "sh/few_bands.h"
 #include "sh/zonal_lanes.h"
 
 namespace zonal::sh {
@@ -89,6 +91,96 @@ void project_block(int bands, LightShape shape, const Vec3<T>& p, const LightArr
   });
 }
 
+/// Whether a comparison holds in every filled lane.
+template <class M>
+inline bool all_lanes(M holds, int filled) {
+  constexpr int kWidth = static_cast<int>(sizeof(M) / sizeof(holds[0]));
+#if __has_builtin(__builtin_reduce_and)
+  if (filled >= kWidth) return __builtin_reduce_and(holds) != 0;
+#endif
+  bool all = true;
+  for (int k = 0; k < kWidth && k < filled; ++k) all &= holds[k] != 0;
+  return all;
+}
+
+/// Lights of up to kFewBands bands, one a lane, in T alone.
+template <class T, int W>
+struct FewLanes {
+  using V = Lanes<T, W>;
+  V x, y, z, s2;  ///< axis, x^2 + y^2
+  V sine2, cosine;
+  bool fits;  ///< false: a light is too near for float, or of extreme size, and nothing here holds
+
+  FewLanes(LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first, int filled) {
+    const V wx = load_lanes<T, W>(lights.x + first, filled) - p.x,
+            wy = load_lanes<T, W>(lights.y + first, filled) - p.y,
+            wz = load_lanes<T, W>(lights.z + first, filled) - p.z;
+    const V r = load_lanes<T, W>(lights.radius + first, filled);
+    const V xy2 = wx * wx + wy * wy, d2 = xy2 + wz * wz;
+    const V inverse = T(1) / sqrt_lanes(d2);
+    x = wx * inverse, y = wy * inverse, z = wz * inverse;
+    s2 = few_sine2(z, xy2 * inverse * inverse);
+    if (shape == LightShape::sphere) {
+      const V ratio = r * inverse;
+      sine2 = ratio * ratio;
+      cosine = sqrt_lanes((T(1) - sine2));
+    } else {
+      const V r2 = r * r, inverse_s2 = T(1) / (d2 + r2);
+      sine2 = r2 * inverse_s2;
+      cosine = sqrt_lanes(d2 * inverse_s2);
+    }
+    // False for NaN too. A disk has no trouble near it.
+    const T most = shape == LightShape::sphere ? T(kFewSine2) : T(1);
+    fits = all_lanes((sine2 <= most) & (d2 > T(kFewLeast)) & (d2 < T(kFewMost)), filled);
+  }
+};
+
+template <class T, int W, int N>
+bool project_few(LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first, T* L) {
+  using V = Lanes<T, W>;
+  const int filled = std::min(W, lights.count - first);
+  const FewLanes<T, W> seen(shape, p, lights, first, filled);
+  if (!seen.fits) return false;
+  V gain[N];
+  few_gains<N, T>(seen.sine2, seen.cosine, gain);
+  const size_t stride = lights.count;
+  T* out = L + first;
+  few_bands<N, T>(
+      seen.x, seen.y, seen.z, seen.s2, gain, [&](int i, V v) __attribute__((always_inline)) {
+        store_lanes<T, W>(out + i * stride, v, filled);
+      });
+  return true;
+}
+
+/// N: bands at compile time, 0 for any number.
+template <class T, int W, int N>
+void project_some(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
+                  T* L) {
+  if constexpr (N > 0) {
+    if (project_few<T, W, N>(shape, p, lights, first, L)) return;
+  }
+  project_block<T, W>(bands, shape, p, lights, first, L);
+}
+
+template <class T, int N>
+void project_all(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* L) {
+  constexpr int kWidth = lane_count<T>, kLine = 2 * kWidth;
+  int first = 0;
+  // A cache line of output at a time: with long strides between coefficients lines do not stay to be finished
+  // later.
+  const int lead = static_cast<int>((64 - reinterpret_cast<std::uintptr_t>(L) % 64) % 64 / sizeof(T));
+  if (lead > 0 && lead + kLine <= lights.count) {
+    project_some<T, kLine, N>(bands, shape, x, lights, 0, L);
+    first = lead;
+  }
+  for (; first + kLine <= lights.count; first += kLine) {
+    project_some<T, kLine, N>(bands, shape, x, lights, first, L);
+  }
+  for (; first < lights.count; first += kWidth) {
+    project_some<T, kWidth, N>(bands, shape, x, lights, first, L);
+  }
+}
+
 /// Adds a block to `lanes`: 3 or 12 lane sums a coefficient.
 template <class T, int W, bool kGradient>
 void accumulate_block(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
@@ -157,12 +249,22 @@ void accumulate(int bands, LightShape shape, const Vec3<T>& p, const LightArrays
 
 template <class T>
 void project_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* L) {
-  constexpr int kWidth = lane_count<T>;
-  int first = 0;
-  for (; first + 2 * kWidth <= lights.count; first += 2 * kWidth) {
-    project_block<T, 2 * kWidth>(bands, shape, x, lights, first, L);
+  switch (bands) {
+    case 1:
+      return project_all<T, 1>(bands, shape, x, lights, L);
+    case 2:
+      return project_all<T, 2>(bands, shape, x, lights, L);
+    case 3:
+      return project_all<T, 3>(bands, shape, x, lights, L);
+    case 4:
+      return project_all<T, 4>(bands, shape, x, lights, L);
+    case 5:
+      return project_all<T, 5>(bands, shape, x, lights, L);
+    case 6:
+      return project_all<T, 6>(bands, shape, x, lights, L);
+    default:
+      return project_all<T, 0>(bands, shape, x, lights, L);
   }
-  for (; first < lights.count; first += kWidth) project_block<T, kWidth>(bands, shape, x, lights, first, L);
 }
 
 template <class T>
