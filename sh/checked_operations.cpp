@@ -212,6 +212,13 @@ void apply_window(int bands, Window window, double size, T* coefficients) {
 }
 
 template <class T>
+Dering dering(int bands, T* coefficients) {
+  require_bands(bands);
+  require_finite("coefficient", count(bands), coefficients);
+  return sh::dering(bands, coefficients);
+}
+
+template <class T>
 Dering dering(int bands, Window window, T* coefficients) {
   require_bands(bands);
   if (window == Window::none) refuse("window is none, must be hann, lanczos or hamming");
@@ -254,6 +261,7 @@ HemisphericalConversion<T> hemispherical_conversion(int hsh_bands, int sh_bands)
   template SphereNodes<T> gauss_nodes(int);                                                       \
   template LeastSquares<T> least_squares(int, const SphereNodes<T>&, const LeastSquaresOptions&); \
   template void apply_window(int, Window, double, T*);                                            \
+  template Dering dering(int, T*);                                                                \
   template Dering dering(int, Window, T*);                                                        \
   template void evaluate_hemispherical(int, const Vec3<T>&, T*);                                  \
   template HemisphericalConversion<T> hemispherical_conversion(int, int);

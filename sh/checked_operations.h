@@ -73,6 +73,8 @@ LeastSquares<T> least_squares(int bands, const SphereNodes<T>& nodes,
 template <class T>
 void apply_window(int bands, Window window, double size, T* coefficients);
 template <class T>
+Dering dering(int bands, T* coefficients);
+template <class T>
 Dering dering(int bands, Window window, T* coefficients);
 
 template <class T>

@@ -10,6 +10,17 @@
 #include "sh/rotation.h"
 
 namespace zonal::sh {
+namespace {
+
+constexpr int kListed = 16;  ///< bands up to which a list of numbers beats blocks
+constexpr int kLanes = 32;   ///< functions treated together
+
+/// The functions' coefficients of one order and one parity of l - m, `size` of them, or zeros beyond the last
+/// function.
+template <class T>
+using Gathered = T[kMaxBands / 2 + 2][kLanes];
+
+}  // namespace
 
 template <class T>
 ClampedCosine<T>::ClampedCosine(int bands)
@@ -43,6 +54,14 @@ ClampedCosine<T>::ClampedCosine(int bands)
       neighbour_[size_t(m) * bands + l] =
           T(0.5 * std::sqrt((double(l + 1) * (l + 1) - double(m) * m) / (4.0 * (l + 1) * (l + 1) - 1)));
   }
+  if (bands > kListed) return;
+  for (int l = 0; l < bands; ++l)
+    for (int m = -l; m <= l; ++m) {
+      for (int from = std::abs(m); from < bands; ++from)
+        if (std::abs(from - l) == 1 || (from - l) % 2 == 0)
+          entries_.push_back({element(l, from, m), index(from, m)});
+      ends_.push_back(int(entries_.size()));
+    }
 }
 
 template <class T>
@@ -72,6 +91,17 @@ int ClampedCosine<T>::nonzeros() const {
 
 template <class T>
 void ClampedCosine<T>::multiply(const T* in, T* out) const {
+  if (!ends_.empty()) {
+    const Entry* entry = entries_.data();
+    for (int i = 0; i < count(bands_); ++i) {
+      T sum = 0;
+#pragma clang loop vectorize(disable)
+      for (const Entry* end = entries_.data() + ends_[i]; entry != end; ++entry)
+        sum += entry->value * in[entry->from];
+      out[i] = sum;
+    }
+    return;
+  }
   // Gather one order into even and odd l - m, multiply, scatter: the loops in the middle run over contiguous
   // numbers.
   T from[2][kMaxBands / 2 + 1], to[2][kMaxBands / 2 + 1];
@@ -98,28 +128,29 @@ void ClampedCosine<T>::multiply(const T* in, T* out) const {
 
 template <class T>
 void ClampedCosine<T>::multiply(int functions, const T* in, T* out) const {
-  constexpr int kLanes = 32;
-  for (int m = 1 - bands_; m < bands_; ++m) {
-    const int k = std::abs(m);
-    for (int l = k; l < bands_; ++l) {
-      const int parity = (l - k) & 1, size = parity_size(k, parity);
-      const T* row = even_.data() + parity_block(k, parity) + ((l - k) >> 1) * size;
+  // One order of a few functions at a time, gathered so that it stays in the nearest cache.
+  Gathered<T> from[2];
+  for (int first = 0; first < functions; first += kLanes) {
+    const int lanes = std::min(kLanes, functions - first);
+    for (int m = 1 - bands_; m < bands_; ++m) {
+      const int k = std::abs(m);
+      for (int l = k; l < bands_; ++l) {
+        T* row = from[(l - k) & 1][(l - k) >> 1];
+        std::copy_n(in + size_t(index(l, m)) * functions + first, lanes, row);
+        std::fill(row + lanes, row + kLanes, T(0));
+      }
       const T* next = neighbour_.data() + size_t(k) * bands_;
-      T* target = out + size_t(index(l, m)) * functions;
-      for (int first = 0; first < functions; first += kLanes) {
-        const int lanes = std::min(kLanes, functions - first);
+      for (int l = k; l < bands_; ++l) {
+        const int p = (l - k) & 1, i = (l - k) >> 1, size = parity_size(k, p);
+        const T* row = even_.data() + parity_block(k, p) + i * size;
         T sum[kLanes] = {};
-        const auto add = [&](T factor, int from) {
-          const T* g = in + size_t(index(from, m)) * functions + first;
-          if (lanes == kLanes)
-            for (int f = 0; f < kLanes; ++f) sum[f] += factor * g[f];
-          else
-            for (int f = 0; f < lanes; ++f) sum[f] += factor * g[f];
-        };
-        for (int j = 0; j < size; ++j) add(row[j], k + parity + 2 * j);
-        if (l + 1 < bands_) add(next[l], l + 1);
-        if (l > k) add(next[l - 1], l - 1);
-        std::copy(sum, sum + lanes, target + first);
+        for (int j = 0; j < size; ++j)
+          for (int f = 0; f < kLanes; ++f) sum[f] += row[j] * from[p][j][f];
+        if (l + 1 < bands_)
+          for (int f = 0; f < kLanes; ++f) sum[f] += next[l] * from[1 - p][i + p][f];
+        if (l > k)
+          for (int f = 0; f < kLanes; ++f) sum[f] += next[l - 1] * from[1 - p][i + p - 1][f];
+        std::copy_n(sum, lanes, out + size_t(index(l, m)) * functions + first);
       }
     }
   }

@@ -42,6 +42,13 @@ class ClampedCosine {
   std::vector<int> block_;    ///< where the block of order m and parity of l - m starts in even_
   std::vector<T> even_;       ///< dense symmetric blocks over l = m + parity, m + parity + 2, ...
   std::vector<T> neighbour_;  ///< couples l with l+1: [m * bands + l]
+
+  struct Entry {
+    T value;
+    int from;
+  };
+  std::vector<Entry> entries_;  ///< up to kListed bands: the non-zero numbers, result after result
+  std::vector<int> ends_;       ///< where each result's end
 };
 
 template <class T>

@@ -48,25 +48,26 @@ const GridTransform<T>& shared_grid(int bands, int degree) {
   return grids.get({bands, degree}, [&] { return std::make_unique<GridTransform<T>>(bands, degree); });
 }
 
-bool fits_table(int bands_a, int bands_b, int bands_out) {
-  return std::max(bands_a, bands_b) <= kMaxTableBands && bands_out < 2 * kMaxTableBands;
+/// Few bands of one factor make the table short, however many the other has.
+bool fits_table(int bands_a, int bands_b, int most) {
+  const int low = std::min(bands_a, bands_b), high = std::max(bands_a, bands_b);
+  return high <= most || (low <= 3 && high <= 30);
 }
 
-/// One function of a structure of arrays.
+constexpr int kLanes = 16;  ///< functions gathered together
+
+/// `lanes` functions of a structure of arrays, each to a row of its own.
 template <class T>
-void gather(int size, int functions, int f, const T* from, T* to) {
-  for (int i = 0; i < size; ++i) to[i] = from[size_t(i) * functions + f];
-}
-template <class T>
-void scatter(int size, int functions, int f, const T* from, T* to) {
-  for (int i = 0; i < size; ++i) to[size_t(i) * functions + f] = from[i];
+void gather(int size, int functions, int first, int lanes, const T* from, T* to) {
+  for (int i = 0; i < size; ++i)
+    for (int f = 0; f < lanes; ++f) to[size_t(f) * size + i] = from[size_t(i) * functions + first + f];
 }
 
 }  // namespace
 
 template <class T>
 T triple_product(int bands, const T* a, const T* b, const T* c) {
-  if (fits_table(bands, bands, bands)) return shared_table<T>(bands, bands, bands).triple(a, b, c);
+  if (fits_table(bands, bands, kTableBands)) return shared_table<T>(bands, bands, bands).triple(a, b, c);
   std::vector<T> ab(count(bands));
   product(bands, a, b, ab.data());
   return dot(bands, ab.data(), c);
@@ -81,7 +82,7 @@ void triple_product(int bands, int functions, const T* a, const T* b, const T* c
 
 template <class T>
 void product(int bands_a, int bands_b, int bands_out, const T* a, const T* b, T* out) {
-  if (fits_table(bands_a, bands_b, bands_out))
+  if (fits_table(bands_a, bands_b, kTableBands))
     shared_table<T>(bands_a, bands_b, bands_out).multiply(a, b, out);
   else
     product_by_quadrature(bands_a, bands_b, bands_out, a, b, out);
@@ -89,16 +90,25 @@ void product(int bands_a, int bands_b, int bands_out, const T* a, const T* b, T*
 
 template <class T>
 void product(int bands_a, int bands_b, int bands_out, int functions, const T* a, const T* b, T* out) {
-  if (fits_table(bands_a, bands_b, bands_out)) {
+  if (fits_table(bands_a, bands_b, kTableBandsBatch)) {
     shared_table<T>(bands_a, bands_b, bands_out).multiply(functions, a, b, out);
     return;
   }
-  std::vector<T> one_a(count(bands_a)), one_b(count(bands_b)), one_out(count(bands_out));
-  for (int f = 0; f < functions; ++f) {
-    gather(count(bands_a), functions, f, a, one_a.data());
-    gather(count(bands_b), functions, f, b, one_b.data());
-    product_by_quadrature(bands_a, bands_b, bands_out, one_a.data(), one_b.data(), one_out.data());
-    scatter(count(bands_out), functions, f, one_out.data(), out);
+  // Turned a cache line of functions at a time.
+  const int size_a = count(bands_a), size_b = count(bands_b), size_out = count(bands_out);
+  std::vector<T> block(size_t(size_a + size_b + size_out) * kLanes);
+  T *block_a = block.data(), *block_b = block_a + size_t(size_a) * kLanes,
+    *block_out = block_b + size_t(size_b) * kLanes;
+  for (int first = 0; first < functions; first += kLanes) {
+    const int lanes = std::min(kLanes, functions - first);
+    gather(size_a, functions, first, lanes, a, block_a);
+    gather(size_b, functions, first, lanes, b, block_b);
+    for (int f = 0; f < lanes; ++f)
+      product_by_quadrature(bands_a, bands_b, bands_out, block_a + size_t(f) * size_a,
+                            block_b + size_t(f) * size_b, block_out + size_t(f) * size_out);
+    for (int i = 0; i < size_out; ++i)
+      for (int f = 0; f < lanes; ++f)
+        out[size_t(i) * functions + first + f] = block_out[size_t(f) * size_out + i];
   }
 }
 
@@ -143,7 +153,7 @@ void product_of_many_truncated(int bands, int M, int count, const T* const* func
 
 template <class T>
 void transfer_matrix(int bands, const T* f, T* matrix) {
-  if (fits_table(bands, bands, bands)) {
+  if (bands <= 20) {
     shared_table<T>(bands, bands, bands).transfer_matrix(f, matrix);
     return;
   }

@@ -17,7 +17,8 @@
 
 namespace zonal::sh {
 
-inline constexpr int kMaxTableBands = 20;
+inline constexpr int kTableBands = 8;        ///< up to which one product takes the table
+inline constexpr int kTableBandsBatch = 12;  ///< and a batch
 
 /// Integral of the product of two functions.
 template <class T>

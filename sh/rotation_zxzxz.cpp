@@ -163,7 +163,8 @@ struct EulerZyz {
   double cos_alpha = 1, sin_alpha = 0, cos_beta, sin_beta, cos_gamma, sin_gamma;
 
   explicit EulerZyz(const Mat3<double>& R) {
-    const double s = std::hypot(R[2][0], R[2][1]);
+    // Squares that vanish leave alpha at 0, which is as good.
+    const double s = std::sqrt(R[2][0] * R[2][0] + R[2][1] * R[2][1]);
     if (s > 0) cos_alpha = R[2][0] / s, sin_alpha = R[2][1] / s;
     // Whatever alpha is, even noise at a pole, the rest is read off Rz(-alpha) R, so that the product is R
     // again.
@@ -174,8 +175,8 @@ struct EulerZyz {
 
  private:
   static void set(double c, double s, double& cos, double& sin) {
-    const double length = std::hypot(c, s);
-    cos = c / length, sin = s / length;
+    const double inverse = 1 / std::sqrt(c * c + s * s);
+    cos = c * inverse, sin = s * inverse;
   }
 };
 
