@@ -5,73 +5,10 @@
 #include <vector>
 
 #include "sh/few_bands.h"
-#include "sh/zonal_lanes.h"
+#include "sh/seen_lanes.h"
 
 namespace zonal::sh {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-/// Lights seen from x, one a lane.
-template <class T, int W>
-struct SeenLanes {
-  using V = Lanes<T, W>;
-  using D = Lanes<double, W>;
-  V x, y, z, u;                     ///< axis and 1 - |z|
-  V versine, sine2, dt, inverse_d;  ///< of the cap; dt/dd; 1/d
-
-  SeenLanes(LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first, int filled) {
-    const D wx = wide(lights.x + first, filled) - double(p.x),
-            wy = wide(lights.y + first, filled) - double(p.y),
-            wz = wide(lights.z + first, filled) - double(p.z);
-    D r = wide(lights.radius + first, filled);
-    const D d2 = wx * wx + wy * wy + wz * wz, r2 = r * r;
-    const D safe = d2 > 0 ? d2 : d2 * 0 + 1.0;
-    const D inverse = 1.0 / sqrt_lanes(safe);
-    const D ax = wx * inverse, ay = wy * inverse, az = d2 > 0 ? wz * inverse : d2 * 0 + 1.0;
-    x = narrow(ax), y = narrow(ay), z = narrow(az);
-    u = narrow((ax * ax + ay * ay) / ((az < 0 ? -az : az) + 1.0));
-    inverse_d = narrow(inverse);
-    const V zero = x * 0;
-    if (shape == LightShape::sphere) {
-      const D h2 = d2 - r2;
-      // On or inside the sphere: the hemisphere, standing still.
-      const D cosine2 = h2 > 0 ? h2 * (inverse * inverse) : h2 * 0;
-      const V cosine = sqrt_lanes(narrow(cosine2));
-      sine2 = narrow(h2 > 0 ? r2 * (inverse * inverse) : d2 * 0 + 1.0);
-      versine = sine2 / (cosine + T(1));
-      dt = cosine > 0 ? -sine2 * inverse_d / (cosine > 0 ? cosine : zero + T(1)) : zero;
-    } else {
-      const D inverse_s2 = 1.0 / (d2 + r2);
-      sine2 = narrow(r2 * inverse_s2);
-      const D s2d2 = d2 * inverse_s2;
-      const V cosine = sqrt_lanes(narrow(s2d2));
-      versine = sine2 / (cosine + T(1));
-      dt = -sine2 * sqrt_lanes(narrow(inverse_s2));
-    }
-  }
-
-  static V narrow(D v) { return __builtin_convertvector(v, V); }
-  static D wide(const T* p, int filled) { return __builtin_convertvector(load_lanes<T, W>(p, filled), D); }
-  DirectionLanes<T, V> direction() const { return {x, y, z, u}; }
-
-  /// gain[l] sign^l, and 2 pi P_l sign^l times dt if wanted.
-  void gains(int bands, V sign, V* gain, V* growth) const {
-    CapRecurrence<T, V> r(versine);
-    gain[0] = versine * T(2 * kPi);
-    if (growth) growth[0] = dt * T(2 * kPi);
-    V parity = sign, scale = sine2 * T(kPi);
-    for (int l = 1; l < bands; ++l) {
-      r.step_q(l);
-      gain[l] = scale * parity * r.q;
-      if (growth) {
-        r.step_p(l);
-        growth[l] = T(2 * kPi) * dt * parity * r.p;
-      }
-      parity *= sign;
-    }
-  }
-};
 
 template <class T, int W>
 void project_block(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
