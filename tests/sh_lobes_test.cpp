@@ -6,9 +6,12 @@
 #include <random>
 #include <vector>
 
+#include "sh/disk_light.h"
 #include "sh/ggx_lobe.h"
+#include "sh/light_batch_hessian.h"
 #include "sh/simple_light_batch.h"
 #include "sh/simple_lights.h"
+#include "sh/sphere_light.h"
 
 namespace zonal::sh {
 namespace {
@@ -196,6 +199,56 @@ void expect_dirac_batches_match(double tolerance) {
 TEST(ShLobesAndPoints, batches_of_lights_without_size_match_single_ones) {
   expect_dirac_batches_match<float>(2e-6);
   expect_dirac_batches_match<double>(1e-14);
+}
+
+// Sums of lanes against single lights in double at the same inputs.
+template <class T>
+void expect_hessian_batch_matches(double tolerance) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const int n = 11;
+  std::vector<T> v[7];
+  for (int i = 0; i < n; ++i) {
+    for (auto& a : v) a.push_back(T(uniform(random)));
+    v[2][i] += T(3), v[3][i] = T(0.5 + 0.4 * v[3][i]);
+  }
+  v[0][2] = v[1][2] = 0;  // a pole
+  v[3][4] = T(9);         // inside
+  const LightArrays<T> lights{n,           v[0].data(), v[1].data(),
+                              v[2].data(), v[3].data(), {v[4].data(), v[5].data(), v[6].data()}};
+  for (const LightShape shape : {LightShape::sphere, LightShape::disk}) {
+    for (const int bands : {1, 2, 5, 11}) {
+      const int size = count(bands);
+      std::vector<T> sum(3 * size), gradient(9 * size), hessian(18 * size);
+      const Vec3<T> x(0);
+      accumulate_lights_hessian(bands, shape, x, lights, sum.data(), gradient.data(), hessian.data());
+      std::vector<double> L(size), s(3 * size), g(9 * size), h(18 * size);
+      std::vector<dvec3> G(size);
+      std::vector<Hessian<double>> H(size);
+      for (int i = 0; i < n; ++i) {
+        const dvec3 y(v[0][i], v[1][i], v[2][i]);
+        const double r = v[3][i];
+        shape == LightShape::disk ? disk_light_hessian(bands, dvec3(0), y, r, L.data(), G.data(), H.data())
+                                  : sphere_light_hessian(bands, dvec3(0), y, r, L.data(), G.data(), H.data());
+        for (int c = 0; c < 3; ++c) {
+          const double w = v[4 + c][i];
+          for (int j = 0; j < size; ++j) {
+            s[c * size + j] += w * L[j];
+            for (int a = 0; a < 3; ++a) g[(c * 3 + a) * size + j] += w * G[j][a];
+            const double six[6] = {H[j].xx, H[j].xy, H[j].xz, H[j].yy, H[j].yz, H[j].zz};
+            for (int a = 0; a < 6; ++a) h[(c * 6 + a) * size + j] += w * six[a];
+          }
+        }
+      }
+      EXPECT_LT(worst_of_largest(sum, s, 3 * size), n * tolerance) << bands;
+      EXPECT_LT(worst_of_largest(gradient, g, 9 * size), n * tolerance) << bands;
+      EXPECT_LT(worst_of_largest(hessian, h, 18 * size), n * tolerance) << bands;
+    }
+  }
+}
+TEST(ShLobesAndPoints, batch_of_hessians_matches_single_lights) {
+  expect_hessian_batch_matches<float>(2e-6);
+  expect_hessian_batch_matches<double>(1e-13);
 }
 
 }  // namespace
