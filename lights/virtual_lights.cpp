@@ -141,7 +141,7 @@ void follow_path(const Scene& scene, EmissionSample ray, uint32_t primary, int b
     // one.
     const float u_lobe = sampler.next_1d();
     const vec2 u = sampler.next_2d();
-    const BsdfSample next = sample(bsdf, prepare(bsdf, s.shading.to_local(s.w_out)), u_lobe, u);
+    const BsdfSample next = sample(bsdf, prepare(bsdf, s.shading.to_local(s.w_out), PathEnd::light), u_lobe, u);
     if (!(next.pdf > 0) || !(next.w_in.z > 0)) return;
     const vec3 w = s.shading.to_world(next.w_in);
     const float leaving = glm::dot(s.normal, w);

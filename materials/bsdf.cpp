@@ -5,6 +5,7 @@
 #include "core/sampling.h"
 #include "materials/blinn_phong.h"
 #include "materials/fresnel.h"
+#include "materials/measured_brdf.h"
 #include "materials/microfacet.h"
 
 namespace zonal {
@@ -63,6 +64,14 @@ inline void evaluate_both(const Bsdf& b, const BsdfContext& view, vec3 w_in, Lob
       return;
     }
 
+    case BsdfKind::measured:
+      // Not divided into lobes: all of it counts as specular.
+      if (has(lobes, Lobes::specular)) {
+        *f = view.end == PathEnd::camera ? b.measured->evaluate(w_out, w_in) : b.measured->evaluate(w_in, w_out);
+      }
+      *pdf = b.measured->pdf(w_out, w_in);
+      return;
+
     case BsdfKind::conductor:
     case BsdfKind::coated:
     case BsdfKind::metallic_roughness: {
@@ -85,13 +94,15 @@ inline void evaluate_both(const Bsdf& b, const BsdfContext& view, vec3 w_in, Lob
 
 }  // namespace
 
-BsdfContext prepare(const Bsdf& b, vec3 w_out) {
+BsdfContext prepare(const Bsdf& b, vec3 w_out, PathEnd end) {
   BsdfContext view;
   view.w_out = w_out;
+  view.end = end;
   if (!above_horizon(w_out)) return view;
   switch (b.kind) {
     case BsdfKind::black:
     case BsdfKind::lambert:
+    case BsdfKind::measured:
       break;
     case BsdfKind::blinn_phong: {
       view.normalization = blinn_phong_normalization(b.exponent);
@@ -149,7 +160,9 @@ BsdfSample sample(const Bsdf& b, const BsdfContext& view, float u_lobe, vec2 u) 
   const vec3 w_out = view.w_out;
   if (b.kind == BsdfKind::black || !above_horizon(w_out)) return s;
 
-  if (u_lobe < view.specular_share) {
+  if (b.kind == BsdfKind::measured) {
+    s.w_in = b.measured->sample_direction(w_out, u_lobe, u);
+  } else if (u_lobe < view.specular_share) {
     const vec3 h = b.kind == BsdfKind::blinn_phong ? sample_blinn_phong(b.exponent, u)
                                                    : sample_visible_normal(w_out, b.alpha_x, b.alpha_y, u);
     const float cosine = glm::dot(w_out, h);
@@ -173,6 +186,8 @@ vec3 albedo(const Bsdf& b) {
       return vec3(0.0f);
     case BsdfKind::lambert:
       return b.diffuse;
+    case BsdfKind::measured:
+      return b.measured->albedo;
     case BsdfKind::blinn_phong:
       return b.diffuse + b.specular;
     case BsdfKind::conductor: {

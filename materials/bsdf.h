@@ -6,7 +6,8 @@
 ///     vec3 f = evaluate(bsdf, view, w_in);                    // 1/sr, without the cosine
 ///
 /// All directions are unit vectors in the shading frame (z = normal), pointing away from the surface. Surfaces reflect
-/// only: f = 0 when either direction has z <= 1e-8. All models are reciprocal and reflect at most what they receive.
+/// only: f = 0 when either direction has z <= 1e-8. All models but `measured` are reciprocal and reflect at most what
+/// they receive; measurements are what they are.
 /// docs/materials.md has the equations.
 
 #include "core/vec.h"
@@ -16,7 +17,7 @@ namespace zonal {
 
 class MeasuredBrdf;  // a material read from a file
 
-enum class BsdfKind : uint8_t { black, lambert, blinn_phong, conductor, coated, metallic_roughness };
+enum class BsdfKind : uint8_t { black, lambert, blinn_phong, conductor, coated, metallic_roughness, measured };
 
 /// Which part of a decomposable BRDF is asked for.
 enum class Lobes : uint8_t { diffuse = 1, specular = 2, all = 3 };
@@ -30,11 +31,18 @@ struct Bsdf {
   float alpha_x = 1, alpha_y = 1;  ///< GGX widths, >= 1e-4, along the frame's x and y
   float exponent = 1;   ///< Blinn-Phong
   const SpecularAlbedo* coat = nullptr;  ///< coated, metallic_roughness: what the coat keeps from the diffuse base
+  const MeasuredBrdf* measured = nullptr;  ///< measured: the data, owned by the material
 };
 
-/// What an evaluation can reuse while w_out stays the same.
+/// Which end of a path the direction given to `prepare` is. Only measurements, which are not exactly reciprocal, tell the
+/// two apart: their data are indexed by the camera's side.
+enum class PathEnd : uint8_t { camera, light };
+
+/// What an evaluation can reuse while w_out stays the same. With PathEnd::light, w_out is where light comes from, and
+/// the directions evaluated or sampled are those it leaves in: a virtual light, a path from a light.
 struct BsdfContext {
   vec3 w_out{0, 0, 1};
+  PathEnd end = PathEnd::camera;
   float specular_albedo_out = 0;  ///< coated, metallic_roughness: directional albedo of the coat seen from w_out
   float specular_share = 0;       ///< probability that sampling takes the specular lobe
   float stretch_out = 1;          ///< GGX: |(alpha_x x, alpha_y y, z)| of w_out
@@ -48,7 +56,7 @@ struct BsdfSample {
   float pdf = 0;   ///< 1/sr; 0: no direction was found, the path ends
 };
 
-BsdfContext prepare(const Bsdf& bsdf, vec3 w_out);
+BsdfContext prepare(const Bsdf& bsdf, vec3 w_out, PathEnd end = PathEnd::camera);
 vec3 evaluate(const Bsdf& bsdf, const BsdfContext& view, vec3 w_in, Lobes lobes = Lobes::all);
 float pdf(const Bsdf& bsdf, const BsdfContext& view, vec3 w_in);
 /// Value and density in one go: what next-event estimation with MIS needs.

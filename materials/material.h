@@ -95,6 +95,14 @@ struct MetallicRoughnessMaterial : Material {
   const char* type() const override { return "metallic_roughness"; }
 };
 
+/// A MERL or RGL file, or an entry of the material database.
+struct MeasuredMaterial : Material {
+  std::shared_ptr<const MeasuredBrdf> brdf;
+  std::string sh_file;  ///< its projection in the database; empty: projected when a method asks for it
+  Bsdf at(vec2) const override;
+  const char* type() const override { return "measured"; }
+};
+
 /// Complex index of refraction of a named metal ("gold", "aluminium", ...) in red, green and blue: 630, 550, 465 nm.
 struct Metal {
   std::string name;

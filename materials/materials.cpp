@@ -88,6 +88,13 @@ Bsdf MetallicRoughnessMaterial::at(vec2 uv) const {
   return b;
 }
 
+Bsdf MeasuredMaterial::at(vec2) const {
+  Bsdf b;
+  b.kind = BsdfKind::measured;
+  b.measured = brdf.get();
+  return b;
+}
+
 const std::vector<MaterialKind>& material_kinds() {
   static const std::vector<MaterialKind> kinds = {
       {"lambert", "diffuse: albedo"},
@@ -95,6 +102,7 @@ const std::vector<MaterialKind>& material_kinds() {
       {"conductor", "GGX metal with exact Fresnel: metal, or eta and k; tint, roughness, anisotropy"},
       {"coated", "diffuse under a GGX dielectric coat: albedo, roughness, ior, anisotropy"},
       {"metallic_roughness", "glTF 2.0's model: base_color, metallic, roughness"},
+      {"measured", "a MERL .binary or RGL .bsdf file: file"},
   };
   return kinds;
 }

@@ -167,7 +167,7 @@ void VplIntegrator::shade(const Tile& tile, vec3* radiance, Sampler* samplers, c
     if (j % 64 == 0 && stop()) return;
     const VirtualLight& light = set_.lights[j];
     transfer(points, light, yuksel, shortest_, &t);
-    const BsdfContext light_view = prepare(light.bsdf, light.frame.to_local(light.w_in));
+    const BsdfContext light_view = prepare(light.bsdf, light.frame.to_local(light.w_in), PathEnd::light);
     const bool constant = light.bsdf.kind == BsdfKind::lambert;
     const vec3 diffuse_flux = constant ? light.power * light.bsdf.diffuse * kInvPi : vec3(0);
 

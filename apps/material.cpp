@@ -1,0 +1,1 @@
+// zonal material: filled by the change that follows.

@@ -1,0 +1,1 @@
+#include "materials/sh_material.h"

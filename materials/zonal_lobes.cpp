@@ -1,0 +1,1 @@
+#include "materials/zonal_lobes.h"
