@@ -218,5 +218,69 @@ TEST(params, refuse_what_they_do_not_have) {
             "\"paths\"?)");
 }
 
+struct MixedParams {
+  enum class Radius { field_of_view, density, metres };
+  int bands = 9;
+  Radius radius = Radius::field_of_view;
+  float metres = 0.5f;
+  void visit(ParamVisitor& v) {
+    v.integer_or_auto("bands", bands, {1, 64}, "bands", "of the receiver");
+    v.choice_or_number("radius", radius, metres, {"field_of_view", "density"}, {.low = 0, .open_low = true},
+                       "m", "of a light");
+  }
+};
+
+TEST(params, a_word_or_a_number) {
+  const auto read = [](const char* text) { return read_params<MixedParams>(json::parse(text), "w"); };
+  EXPECT_EQ(read(R"({"bands": "auto"})").bands, kAuto);
+  EXPECT_EQ(read(R"({"bands": 12})").bands, 12);
+  EXPECT_EQ(read("{}").bands, 9);
+  EXPECT_EQ(read(R"({"radius": "density"})").radius, MixedParams::Radius::density);
+  const MixedParams number = read(R"({"radius": 0.25})");
+  EXPECT_EQ(number.radius, MixedParams::Radius::metres);
+  EXPECT_EQ(number.metres, 0.25f);
+}
+
+TEST(params, a_word_or_a_number_is_written_as_it_is_read) {
+  for (const char* text : {R"({"bands":"auto","radius":"density"})", R"({"bands":3,"radius":0.1})"}) {
+    const MixedParams params = read_params<MixedParams>(json::parse(text), "w");
+    EXPECT_EQ(write_params(params).dump(), text);
+  }
+}
+
+TEST(params, a_word_or_a_number_is_listed) {
+  const std::vector<ParamInfo> infos = list_params<MixedParams>();
+  ASSERT_EQ(infos.size(), 2u);
+  EXPECT_EQ(infos[0].default_value, "9");
+  EXPECT_EQ(infos[0].range, "auto, or [1, 64]");
+  EXPECT_EQ(infos[1].default_value, "field_of_view");
+  EXPECT_EQ(infos[1].range, "field_of_view, density, or > 0");
+}
+
+TEST(params, neither_the_word_nor_a_number_in_the_range) {
+  const auto error = [](const char* text) -> std::string {
+    try {
+      read_params<MixedParams>(json::parse(text), "w");
+    } catch (const SceneError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error(R"({"bands": 0})"), "w: /bands: found 0, expected auto or a whole number in [1, 64]");
+  EXPECT_EQ(error(R"({"bands": 2.5})"), "w: /bands: found 2.5, expected auto or a whole number in [1, 64]");
+  EXPECT_EQ(error(R"({"bands": "aut"})"),
+            "w: /bands: found the string \"aut\", expected auto or a whole number in [1, 64] (did you mean "
+            "\"auto\"?)");
+  EXPECT_EQ(error(R"({"bands": 1e300})"),
+            "w: /bands: found 1e+300, expected auto or a whole number in [1, 64]");
+  EXPECT_EQ(error(R"({"radius": 0})"), "w: /radius: found 0, expected a number > 0");
+  EXPECT_EQ(error(R"({"radius": "densty"})"),
+            "w: /radius: found the string \"densty\", expected one of field_of_view, density or a number > 0 "
+            "(did you "
+            "mean \"density\"?)");
+  EXPECT_EQ(error(R"({"radius": null})"),
+            "w: /radius: found null, expected one of field_of_view, density or a number > 0");
+}
+
 }  // namespace
 }  // namespace zonal
