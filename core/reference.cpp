@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/machine.h"
 #include "integrators/table.h"
 
@@ -15,19 +16,6 @@ namespace zonal {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): tells changed files apart, nothing more.
-class Hash {
- public:
-  void add(const std::string& bytes) {
-    for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 0x100000001b3u;
-    value_ = (value_ ^ bytes.size()) * 0x100000001b3u;  // "ab" + "c" is not "a" + "bc"
-  }
-  std::string text() const { return fmt::format("{:016x}", value_); }
-
- private:
-  uint64_t value_ = 0xcbf29ce484222325u;
-};
 
 std::string content_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
