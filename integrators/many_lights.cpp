@@ -1,1 +1,216 @@
-// Filled by the change that follows.
+#include "integrators/many_lights.h"
+
+#include <algorithm>
+
+#include "core/render.h"
+#include "integrators/direct.h"
+
+namespace zonal {
+
+void ManyLightsParams::visit(ParamVisitor& v, int occlusions) {
+  v.integer("lights", lights, {1, 1e8}, "lights",
+            "virtual lights stored in all, after all bounces, shared among primaries by power");
+  v.integer("bounces", bounces, {1, 1000}, "bounces",
+            "generations of virtual lights; direct light is bounce 0");
+  v.integer("pass_lights", pass_lights, {0, 1e8}, "lights",
+            "lights of one pass; 0: all, or what keeps a pass below a tenth of a given time");
+  v.choice("distribution", distribution, {"grid", "paths"},
+           "grid over a reflective shadow map (spot, point, directional lights), or light paths");
+  v.choice("direct", direct, {"sampled", "none"}, "who renders direct light");
+  v.integer("direct_samples", direct_samples, {1, 1e6}, "samples",
+            "pairs of light and BRDF rays a pixel and pass");
+  std::vector<std::string> names = {"none", "center", "sphere"};
+  names.resize(static_cast<size_t>(occlusions));
+  v.choice("occlusion", occlusion, names, "what blocks light on its way from a virtual light");
+}
+
+namespace {
+
+VirtualLightOptions tracing_options(const ManyLightsParams& params, const Pass& pass, int lights) {
+  VirtualLightOptions options;
+  options.lights = lights;
+  options.bounces = params.bounces;
+  options.distribution = params.distribution == ManyLightsParams::Distribution::grid
+                             ? VirtualLightOptions::grid
+                             : VirtualLightOptions::paths;
+  options.seed = pass.seed;
+  options.pass = static_cast<uint32_t>(pass.index);
+  options.block_texels = params.block_texels;
+  options.placement = params.placement == ManyLightsParams::Placement::sampled ? VirtualLightOptions::sampled
+                                                                               : VirtualLightOptions::center;
+  return options;
+}
+
+}  // namespace
+
+void ManyLights::trace_lights(const Pass& pass, int count, const Stop& stop, PassStats* stats) {
+  if (given_) {
+    set_ = *given_;
+  } else {
+    VirtualLightOptions options = tracing_options(shared_, pass, count);
+    adjust(options);
+    set_ = make_virtual_lights(pass.scene, options, stop);
+  }
+  if (stats) {
+    stats->numbers["virtual_lights"] += static_cast<double>(set_.lights.size());
+    stats->numbers["light_rays"] += static_cast<double>(set_.rays);
+    if (stats->warnings.empty()) stats->warnings = set_.warnings;
+  }
+  take_lights(pass, stop, stats);
+}
+
+/// Lays the present set out in arrays and lets the method prepare them.
+void ManyLights::take_lights(const Pass& pass, const Stop& stop, PassStats* stats) {
+  arrays_ = LightArrays(set_, kBlockLights);
+  PassStats ignored;
+  prepare(pass, set_, arrays_, stop, stats ? *stats : ignored);
+}
+
+/// A timed render whose pass would take more than a tenth of the time gathers from fewer lights a pass, but
+/// not so few that gathering takes less of a pass than all the rest of it. Measured on four tiles spread over
+/// the picture, once.
+int ManyLights::lights_that_fit(const Pass& pass, const Stop& stop) {
+  trace_lights(pass, std::min(shared_.lights, 64), stop, nullptr);
+  if (set_.lights.empty()) return shared_.lights;
+  const double with_lights = seconds_a_pass(pass, stop);
+  const auto count = static_cast<double>(set_.lights.size());
+  arrays_.count = 0;
+  const double rest = seconds_a_pass(pass, stop);
+  const double per_light = std::max(with_lights - rest, 1e-3 * with_lights) / count;
+  const double fit = std::max(pass.budget_seconds / 10 - rest, rest) / per_light;
+  return static_cast<int>(std::clamp(fit, 1.0, static_cast<double>(shared_.lights)));
+}
+
+/// How long shading the whole picture from the present lights will take.
+double ManyLights::seconds_a_pass(const Pass& pass, const Stop& stop) const {
+  const Camera& camera = pass.camera;
+  const auto start = Clock::now();
+  Tile tile;
+  std::array<Sampler, kTilePixels> samplers;
+  std::array<vec3, kTilePixels> radiance;
+  TileStats ignored;
+  double pixels = 0;
+  for (int i = 0; i < 4; ++i) {
+    const ivec2 corner(camera.width * (2 * (i % 2) + 1) / 4 / 8 * 8,
+                       camera.height * (2 * (i / 2) + 1) / 4 / 8 * 8);
+    trace_tile(pass.scene, camera, corner, pass.seed, 0, true, &tile, samplers.data());
+    shade(tile, radiance.data(), samplers.data(), stop, ignored);
+    pixels += tile.count;
+  }
+  return seconds_since(start) / pixels * camera.width * camera.height / pass.threads;
+}
+
+void ManyLights::begin_pass(const Pass& pass, const Stop& stop, PassStats& stats) {
+  scene_ = &pass.scene;
+  pass_key_ = hash32(pass.seed, 0x6c696768u, static_cast<uint32_t>(pass.index));
+  if (pass.index == 0) {
+    pass_lights_ = shared_.pass_lights > 0 ? std::min(shared_.pass_lights, shared_.lights) : shared_.lights;
+    if (shared_.pass_lights == 0 && pass.budget_seconds > 0 && !given_)
+      pass_lights_ = lights_that_fit(pass, stop);
+    stats.numbers["pass_lights"] = pass_lights_;
+  }
+  trace_lights(pass, pass_lights_, stop, &stats);
+}
+
+void ManyLights::shade_direct(const Tile& tile, vec3* radiance, Sampler* samplers, TileStats& stats) const {
+  for (int i = 0; i < tile.count; ++i) {
+    radiance[i] = vec3(0);
+    if (shared_.direct == ManyLightsParams::Direct::none) continue;
+    if (!tile.found(i)) {
+      if (const Light* sky = scene_->environment())
+        radiance[i] = sky->radiance({.normal = tile.directions[i]}, -tile.directions[i]);
+      continue;
+    }
+    radiance[i] = scene_->emitted(tile.surfaces[i]);
+    if (tile.bsdfs[i].kind == BsdfKind::black) continue;
+    const ShadingPoint point(tile.surfaces[i], tile.bsdfs[i]);
+    radiance[i] += sample_direct(*scene_, point, samplers[i], shared_.direct_samples, stats);
+  }
+}
+
+/// Zeroes what the lights' shadow rays find blocked, light by light in packets of 8 points.
+void ManyLights::remove_shadowed(const TilePoints& points, int first, int count, Contributions& c,
+                                 TileStats& stats) const {
+  std::array<int, kTilePixels> lit;
+  std::array<vec3, 8> origins;
+  for (int j = 0; j < count; ++j) {
+    int lit_count = 0;
+    for (int k = 0; k < points.count; ++k) {
+      const int i = c.at(j, k);
+      if (c.r[i] != 0 || c.g[i] != 0 || c.b[i] != 0) lit[lit_count++] = k;
+    }
+    const vec3 target = arrays_.target[first + j];
+    for (int begin = 0; begin < lit_count; begin += 8) {
+      const int n = std::min(8, lit_count - begin);
+      for (int m = 0; m < n; ++m) {
+        const Surface& s = points.surface(lit[begin + m]);
+        origins[m] = offset_origin(s, target - s.position);
+      }
+      const uint32_t blocked = scene_->occluded8(origins.data(), (1u << n) - 1u, target);
+      for (int m = 0; m < n; ++m) {
+        if (!(blocked >> m & 1u)) continue;
+        const int i = c.at(j, lit[begin + m]);
+        c.r[i] = c.g[i] = c.b[i] = 0;
+      }
+    }
+    stats.shadow_rays += lit_count;
+  }
+}
+
+namespace {
+
+/// Adds a block up light by light.
+void add(const TilePoints& points, int count, const Contributions& c, PointSums& sums) {
+  if (c.order == Contributions::Order::by_light) {
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k < points.padded; ++k) {
+        const int i = j * kTilePixels + k;
+        sums.r[k] += c.r[i], sums.g[k] += c.g[i], sums.b[k] += c.b[i];
+      }
+    return;
+  }
+  for (int k = 0; k < points.count; ++k) {
+    const int row = k * kBlockLights;
+    for (int j = 0; j < count; ++j)
+      sums.r[k] += c.r[row + j], sums.g[k] += c.g[row + j], sums.b[k] += c.b[row + j];
+  }
+}
+
+}  // namespace
+
+void ManyLights::gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const {
+  Contributions c;
+  gather(points, first, count, c);
+  add(points, count, c, sums);
+}
+
+void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, const Stop& stop,
+                       TileStats& stats) const {
+  shade_direct(tile, radiance, samplers, stats);
+  if (arrays_.count == 0) return;
+  std::array<uint32_t, kTilePixels> seeds;
+  for (int i = 0; i < tile.count; ++i)
+    seeds[i] =
+        hash32(pass_key_, static_cast<uint32_t>(tile.pixels[i].x), static_cast<uint32_t>(tile.pixels[i].y));
+  const TilePoints points(tile, seeds.data());
+  if (points.count == 0) return;
+
+  PointSums sums;
+  Contributions c;
+  for (int first = 0; first < arrays_.count; first += kBlockLights) {
+    if (stop()) return;
+    const int count = std::min(kBlockLights, arrays_.count - first);
+    stats.light_evaluations += static_cast<uint64_t>(points.count) * count;
+    if (shared_.occlusion == Occlusion::none && !accounts()) {
+      gather_sums(points, first, count, sums);
+      continue;
+    }
+    gather(points, first, count, c);
+    if (shared_.occlusion != Occlusion::none) remove_shadowed(points, first, count, c, stats);
+    if (accounts()) account(points, first, count, c, stats);
+    add(points, count, c, sums);
+  }
+  for (int k = 0; k < points.count; ++k) radiance[points.pixel[k]] += vec3(sums.r[k], sums.g[k], sums.b[k]);
+}
+
+}  // namespace zonal

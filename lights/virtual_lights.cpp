@@ -134,14 +134,16 @@ void follow_path(const Scene& scene, EmissionSample ray, uint32_t primary, int b
     if (bsdf.kind == BsdfKind::black || !(cos_shading > 0) || !(cos_geometric > 0)) return;
     const vec3 power = ray.power * (cos_shading / cos_geometric);
     out->lights.push_back({s.position, s.normal, s.shading, s.w_out, power, bsdf,
-                           static_cast<uint32_t>(bounce), primary, primary_distance});
+                           static_cast<uint32_t>(bounce), primary, primary_distance, s.material,
+                           offset_origin(s, s.normal)});
     if (bounce == bounces) return;
 
     // Reflect the flux: f cos/pdf is asked with the shading cosine, light that leaves counts by the geometric
     // one.
     const float u_lobe = sampler.next_1d();
     const vec2 u = sampler.next_2d();
-    const BsdfSample next = sample(bsdf, prepare(bsdf, s.shading.to_local(s.w_out), PathEnd::light), u_lobe, u);
+    const BsdfSample next =
+        sample(bsdf, prepare(bsdf, s.shading.to_local(s.w_out), PathEnd::light), u_lobe, u);
     if (!(next.pdf > 0) || !(next.w_in.z > 0)) return;
     const vec3 w = s.shading.to_world(next.w_in);
     const float leaving = glm::dot(s.normal, w);
@@ -166,8 +168,8 @@ void follow_paths(const Scene& scene, const Plan& plan, const VirtualLightOption
   }
 }
 
-/// How many paths leave about `options.lights` lights: by a pilot of its own random numbers, the same whatever the
-/// seed and pass, so that the set's expectation does not depend on its own outcome.
+/// How many paths leave about `options.lights` lights: by a pilot of its own random numbers, the same
+/// whatever the seed and pass, so that the set's expectation does not depend on its own outcome.
 uint32_t paths_wanted(const Scene& scene, VirtualLightOptions options) {
   const auto lights = static_cast<double>(options.lights);
   options.seed = kPilotSeed, options.pass = 0;
@@ -194,6 +196,25 @@ std::string missed_warning(const Scene& scene) {
 }
 
 }  // namespace
+
+std::array<uint32_t, 8> VirtualLightSet::neighbours(uint32_t light) const {
+  std::array<uint32_t, 8> found;
+  found.fill(kNone);
+  const VirtualLight& v = lights[light];
+  if (v.grid == kNone) return found;
+  const VirtualLightGrid& grid = grids[v.grid];
+  const int column = static_cast<int>(v.cell) % grid.columns, row = static_cast<int>(v.cell) / grid.columns;
+  int slot = 0;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      const int c = column + dx, r = row + dy;
+      if (c >= 0 && r >= 0 && c < grid.columns && r < grid.rows) found[slot] = grid.at[r * grid.columns + c];
+      ++slot;
+    }
+  }
+  return found;
+}
 
 VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOptions& options,
                                     const Stop& stop) {

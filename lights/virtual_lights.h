@@ -11,6 +11,7 @@
 /// number of lights; the mean over passes converges. Same scene, options and seed: same set, on any number of
 /// threads.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -33,6 +34,23 @@ struct VirtualLight {
   uint32_t bounce = 1;         ///< 1: lit by a primary light
   uint32_t primary = 0;        ///< index into Scene::lights() of the light the path began at
   float primary_distance = 0;  ///< metres from where it began to the path's first surface
+  uint32_t material = kNone;   ///< index into Scene::materials()
+  vec3 shadow_point{0};        ///< the position moved off its surface to the lit side: where shadow rays end
+  /// Square metres of surface whose light it carries: the solid angle of its cells of the map, times squared
+  /// distance, over the cosine (directional: area over cosine). 0 where no map says (paths, later bounces).
+  float footprint = 0;
+  uint32_t grid = kNone;  ///< index into VirtualLightSet::grids; kNone: it came by a path or after a bounce
+  uint32_t cell = 0;      ///< row * columns + column of that grid
+  uint32_t first_texel = 0, texel_count = 0;  ///< in VirtualLightSet::texels
+};
+
+/// The map of one primary light, or one face of a point light's cube.
+struct VirtualLightGrid {
+  uint32_t primary = 0;  ///< index into Scene::lights()
+  int columns = 0, rows = 0;
+  float fov =
+      0;  ///< radians, the map's full width: a spot's whole outer cone, pi/2 for a cube's face, 0 directional
+  std::vector<uint32_t> at;  ///< of each cell the index of its light, kNone where it holds none
 };
 
 struct VirtualLightOptions {
@@ -41,13 +59,22 @@ struct VirtualLightOptions {
   /// from every light.
   enum Distribution { grid, paths };
 
-  /// Lights stored, all bounces together. The number of paths that leaves about as many is found by a pilot; a grid
-  /// takes the nearest rectangle.
+  /// Lights stored, all bounces together. The number of paths that leaves about as many is found by a pilot;
+  /// a grid takes the nearest rectangle.
   int lights = 400;
   int bounces = 1;  ///< generations
   Distribution distribution = grid;
   uint64_t seed = 0;
   uint32_t pass = 0;
+
+  /// A cell of a grid is a block of `block_texels` x `block_texels` texels of the map, one ray each. Its one
+  /// light holds the flux of all of them and stands at one: drawn by flux (`sampled`: unbiased over the
+  /// passes), or the one nearest the block's centre that meets a surface, rays through the texels' centres
+  /// (`center`: the same every pass).
+  int block_texels = 1;
+  enum Placement { sampled, center };
+  Placement placement = sampled;
+  bool keep_texels = false;  ///< fill VirtualLightSet::texels
 };
 
 struct VirtualLightSet {
@@ -55,8 +82,15 @@ struct VirtualLightSet {
   uint64_t rays = 0;                  ///< traced
   std::vector<std::string> warnings;  ///< one line each, for the user
   int columns = 0,
-      rows = 0;           ///< of the strongest light's grid (of one cube face for a point light); 0: no grid
+      rows = 0;  ///< of the strongest light's grid (of one cube face for a point light); 0: no grid
+  std::vector<VirtualLightGrid> grids;  ///< cube faces apart
+  /// With `keep_texels`: the texels of each grid light's block that meet a reflecting surface, block by
+  /// block. Their powers sum to the light's.
+  std::vector<VirtualLight> texels;
   vec3 emitted_power{0};  ///< W, all primary lights together, whether or not it met a surface
+
+  /// The lights in the eight cells around a light's own, row by row; kNone where there is none.
+  std::array<uint32_t, 8> neighbours(uint32_t light) const;
 };
 
 /// Returns early, with part of the set and without warnings, when `stop` says so.

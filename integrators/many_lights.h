@@ -1,0 +1,135 @@
+#pragma once
+/// What vpl, vsl, hvl and vsgl share, written once: tracing the virtual lights, fitting their number to the
+/// time, direct light, and the loop over blocks of lights and a tile's points with its shadow rays. A method
+/// fills in two functions:
+///
+///     class Flat : public ManyLights {
+///       void gather(const TilePoints& points, int first, int count, Contributions& out) const override {
+///         for (int j = 0; j < count; ++j)
+///           for (int k = 0; k < points.padded; ++k)
+///             out.r[out.at(j, k)] = out.g[out.at(j, k)] = out.b[out.at(j, k)] = lights().power_r[first + j];
+///       }
+///     };
+///
+/// Sums run over the lights in their order, light 0 first, whatever the threads.
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "core/integrator.h"
+#include "core/params.h"
+#include "integrators/light_arrays.h"
+#include "integrators/tile_points.h"
+#include "lights/virtual_lights.h"
+
+namespace zonal {
+
+/// What may stand between a shaded point and a virtual light. Each method lists those it has, in this order.
+enum class Occlusion {
+  none,    ///< light passes through everything
+  center,  ///< one shadow ray to the light's position
+  sphere,  ///< one shadow ray to a point of the light's sphere, drawn anew for each light, pixel and pass
+};
+
+struct ManyLightsParams {
+  enum class Distribution { grid, paths };
+  enum class Direct { sampled, none };
+  enum class Placement { sampled, center };
+
+  int lights = 400, bounces = 1;
+  int pass_lights = 0;
+  Distribution distribution = Distribution::grid;
+  int block_texels = 1;
+  Placement placement = Placement::sampled;
+  Direct direct = Direct::sampled;
+  int direct_samples = 1;
+  Occlusion occlusion = Occlusion::center;
+  float skip = 0;  ///< share of a pixel's light
+
+  /// `occlusions`: how many of the names none, center, sphere the method has.
+  void visit(ParamVisitor& v, int occlusions);
+};
+
+/// Lights handled together: their contributions to a tile's points stay in the cache.
+inline constexpr int kBlockLights = 32;
+
+/// Radiance that each light of a block sends to the camera by way of each point, W m^-2 sr^-1, before
+/// shadows. Both orders of the loops vectorise: `by_light` holds the points of one light side by side,
+/// `by_point` the lights of one point. Entries of padding points (TilePoints::padded) are never read.
+struct Contributions {
+  enum class Order { by_light, by_point };
+  Order order = Order::by_light;
+  alignas(64) std::array<float, kBlockLights * kTilePixels> r, g, b;
+
+  /// Place of light `j` of the block (0 based) and point `k`.
+  int at(int j, int k) const { return order == Order::by_light ? j * kTilePixels + k : k * kBlockLights + j; }
+};
+
+/// Sums over lights for each of a tile's points.
+struct PointSums {
+  alignas(64) std::array<float, kTilePixels> r{}, g{}, b{};
+};
+
+class ManyLights : public Integrator {
+ public:
+  explicit ManyLights(const ManyLightsParams& shared) : shared_(shared) {}
+  void begin_pass(const Pass&, const Stop&, PassStats&) final;
+  void shade(const Tile&, vec3* radiance, Sampler*, const Stop&, TileStats&) const final;
+
+  /// From now on every pass gathers from these lights instead of tracing its own: for tests, and for showing
+  /// one method the lights of another.
+  void gather_from(VirtualLightSet set) { given_ = std::make_shared<VirtualLightSet>(std::move(set)); }
+  /// The lights of the current pass: what a GPU twin gathers from.
+  const VirtualLightSet& light_set() const { return set_; }
+
+ protected:
+  /// Called when a pass has its lights, before any `gather`: radii, coefficients, whatever a light keeps. May
+  /// run in parallel inside. `set.lights[i]` is element i of `arrays`, where the method may set the radii.
+  virtual void prepare(const Pass&, const VirtualLightSet& set, LightArrays& arrays, const Stop&,
+                       PassStats&) {
+    (void)set, (void)arrays;
+  }
+  /// What a method's options ask of the tracing beyond the shared parameters (texels kept, ...).
+  virtual void adjust(VirtualLightOptions&) const {}
+
+  /// Contributions of lights [first, first + count) to all points, in the order of loops `out.order` says
+  /// when it comes back; everything finite and >= 0. Exact zeros save their shadow rays. Called from many
+  /// threads.
+  virtual void gather(const TilePoints& points, int first, int count, Contributions& out) const = 0;
+  /// The same, summed over the lights into `sums` (added to what is there), where nothing occludes. Override
+  /// it where a method sums faster than by way of the block.
+  virtual void gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const;
+  /// Sees the block once shadows have zeroed what they hide: for statistics.
+  virtual void account(const TilePoints&, int first, int count, const Contributions& visible,
+                       TileStats&) const {
+    (void)first, (void)count, (void)visible;
+  }
+  /// Whether `account` wants to be called.
+  virtual bool accounts() const { return false; }
+
+  const LightArrays& lights() const { return arrays_; }
+  const Scene& scene() const { return *scene_; }
+  const ManyLightsParams& shared() const { return shared_; }
+  /// A number that differs from pass to pass and seed to seed: what `gather` hashes its own random numbers
+  /// from, with TilePoints::seed and the light's index.
+  uint32_t pass_key() const { return pass_key_; }
+
+ private:
+  void trace_lights(const Pass&, int count, const Stop&, PassStats*);
+  void take_lights(const Pass&, const Stop&, PassStats*);
+  int lights_that_fit(const Pass&, const Stop&);
+  double seconds_a_pass(const Pass&, const Stop&) const;
+  void shade_direct(const Tile&, vec3* radiance, Sampler*, TileStats&) const;
+  void remove_shadowed(const TilePoints&, int first, int count, Contributions&, TileStats&) const;
+
+  ManyLightsParams shared_;
+  const Scene* scene_ = nullptr;
+  int pass_lights_ = 0;
+  uint32_t pass_key_ = 0;
+  VirtualLightSet set_;
+  LightArrays arrays_;
+  std::shared_ptr<const VirtualLightSet> given_;
+};
+
+}  // namespace zonal

@@ -1,0 +1,49 @@
+#include "integrators/tile_points.h"
+
+#include "materials/microfacet.h"
+
+namespace zonal {
+
+namespace {
+
+/// Every second bit of a Morton code: 8 points in a row of codes are a block of 4 x 2 pixels.
+int morton_x(int code) {
+  return (code & 1) | (code >> 1 & 2) | (code >> 2 & 4);
+}
+
+}  // namespace
+
+TilePoints::TilePoints(const Tile& t, const uint32_t* seeds) : tile(t) {
+  std::array<int8_t, kTilePixels> at;  // of the 8x8 block the tile lies in
+  at.fill(-1);
+  for (int i = 0; i < tile.count; ++i)
+    at[(tile.pixels[i].y & 7) * 8 + (tile.pixels[i].x & 7)] = static_cast<int8_t>(i);
+
+  for (int code = 0; code < kTilePixels; ++code) {
+    const int i = at[morton_x(code >> 1) * 8 + morton_x(code)];
+    if (i < 0 || !tile.found(i) || tile.bsdfs[i].kind == BsdfKind::black) continue;
+    const Surface& s = tile.surfaces[i];
+    const vec3 out = s.shading.to_local(s.w_out);
+    if (!(out.z > kMinCosine)) continue;
+    const int k = count++;
+    pixel[k] = i;
+    seed[k] = seeds ? seeds[i] : 0;
+    x[k] = s.position.x, y[k] = s.position.y, z[k] = s.position.z;
+    gx[k] = s.normal.x, gy[k] = s.normal.y, gz[k] = s.normal.z;
+    tx[k] = s.shading.x.x, ty[k] = s.shading.x.y, tz[k] = s.shading.x.z;
+    bx[k] = s.shading.y.x, by[k] = s.shading.y.y, bz[k] = s.shading.y.z;
+    nx[k] = s.shading.z.x, ny[k] = s.shading.z.y, nz[k] = s.shading.z.z;
+    ox[k] = out.x, oy[k] = out.y, oz[k] = out.z;
+    view[k] = prepare(tile.bsdfs[i], out);
+  }
+
+  padded = (count + 7) / 8 * 8;
+  for (int k = count; k < padded; ++k) {
+    const int last = count - 1;
+    pixel[k] = pixel[last], seed[k] = seed[last], view[k] = view[last];
+    for (Floats* a : {&x, &y, &z, &gx, &gy, &gz, &tx, &ty, &tz, &bx, &by, &bz, &nx, &ny, &nz, &ox, &oy, &oz})
+      (*a)[k] = (*a)[last];
+  }
+}
+
+}  // namespace zonal
