@@ -1,9 +1,15 @@
 #include "materials/measured_brdf.h"
 
 #include <cmath>
+#include <fstream>
 
 #include "core/error.h"
 #include "core/sampling.h"
+#include "materials/rgl.h"
+#include "materials/tensor_file.h"
+#if __has_include("materials/merl.h")
+#include "materials/merl.h"
+#endif
 
 namespace zonal {
 
@@ -31,7 +37,15 @@ void MeasuredBrdf::estimate_albedo() {
 }
 
 std::unique_ptr<MeasuredBrdf> load_measured(const std::string& file) {
-  throw SceneError(file + ": not a MERL or RGL file");
+  std::ifstream stream(file, std::ios::binary);
+  std::string front(kTensorMagic.size(), '\0');
+  stream.read(front.data(), static_cast<std::streamsize>(front.size()));
+  if (front == kTensorMagic) return load_rgl(file);
+#if __has_include("materials/merl.h")
+  return load_merl(file);
+#else
+  throw SceneError(file + ": found no RGL file, expected one");
+#endif
 }
 
 }  // namespace zonal
