@@ -1,1 +1,286 @@
-// Filled by the change that follows.
+#include "materials/sh_projector_quadrature.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <queue>
+
+#include "materials/measured_brdf.h"
+#include "sh/gauss_panel.h"
+
+namespace zonal {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int kOrder = 6, kNodes = kOrder * kOrder;
+/// Half of a cell's width times the highest l: six nodes integrate exp(i 3 t) to 3e-6.
+constexpr double kPhase = 3;
+
+struct Direction {
+  double x, y, z;
+};
+
+double chord(const Direction& a, const Direction& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
+}
+
+/// From (t, phi) of the half vector to w_in.
+struct Map {
+  double sin_out, cos_out;
+
+  explicit Map(double theta_out) : sin_out(std::sin(theta_out)), cos_out(std::cos(theta_out)) {}
+
+  /// (ShQ-1) w_in.z = 2 (h.o) h.z - o.z vanishes where tan 2 theta = -cos theta_o / (sin theta_o cos phi).
+  double theta_max(double cos_phi) const { return 0.5 * std::atan2(cos_out, -sin_out * cos_phi); }
+
+  /// Also d omega_in / (dt dphi) = 4 (h.o) sin theta 2 t theta_max.
+  Direction at(double t, double phi, double* jacobian = nullptr) const {
+    const double c = std::cos(phi), s = std::sin(phi), widest = theta_max(c), theta = t * t * widest;
+    const double sin_h = std::sin(theta), cos_h = std::cos(theta);
+    const double h_dot_o = sin_h * c * sin_out + cos_h * cos_out;
+    if (jacobian) *jacobian = 8 * h_dot_o * sin_h * t * widest;
+    // The height as a product: exact where it goes to zero, at the horizon.
+    const double radius = std::sqrt(cos_out * cos_out + sin_out * sin_out * c * c);
+    return {2 * h_dot_o * sin_h * c - sin_out, 2 * h_dot_o * sin_h * s,
+            radius * std::sin(2 * (widest - theta))};
+  }
+};
+
+struct Rule {
+  std::array<double, kOrder> node, weight;  ///< on [0, 1]
+  std::array<double, kOrder> fifth,
+      sixth;  ///< give the Legendre coefficients of degree 4 and 5 from the values
+
+  Rule() {
+    const double* x = sh::GaussPanels::get().nodes(kOrder);
+    const double* w = sh::GaussPanels::get().weights(kOrder);
+    for (int i = 0; i < kOrder; ++i) {
+      node[i] = 0.5 + 0.5 * x[i], weight[i] = 0.5 * w[i];
+      const double x2 = x[i] * x[i];
+      fifth[i] = 9 * weight[i] * (35 * x2 * x2 - 30 * x2 + 3) / 8;
+      sixth[i] = 11 * weight[i] * x[i] * (63 * x2 * x2 - 70 * x2 + 15) / 8;
+    }
+  }
+  static const Rule& get() {
+    static const Rule rule;
+    return rule;
+  }
+};
+
+constexpr int kIntegrands = 3;  ///< F, F cos, F^2; channels summed
+
+struct Cell {
+  double t0, t1, phi0, phi1;
+  std::array<Direction, kNodes> w;
+  std::array<double, kNodes> weight;
+  std::array<vec3, kNodes> f;
+  double total[kIntegrands];
+  double tail_t[kIntegrands], tail_phi[kIntegrands];
+};
+
+class Integrator {
+ public:
+  Integrator(const Bsdf& bsdf, double azimuth, double theta_out)
+      : bsdf_(bsdf),
+        map_(theta_out),
+        cos_(std::cos(azimuth)),
+        sin_(std::sin(azimuth)),
+        w_out_(float(map_.sin_out * cos_), float(map_.sin_out * sin_), float(map_.cos_out)),
+        view_(prepare(bsdf, w_out_)) {}
+
+  const Map& map() const { return map_; }
+
+  /// Of directions in the view frame.
+  void evaluate(int n, const Direction* w, vec3* f) const {
+    std::array<vec3, kNodes> local;
+    for (int i = 0; i < n; ++i) {
+      // Float's rounding must not put a direction on the other side of the horizon's cut at 1e-8.
+      const float z = std::max(float(w[i].z), 1.01e-8f);
+      local[i] = vec3(float(cos_ * w[i].x - sin_ * w[i].y), float(sin_ * w[i].x + cos_ * w[i].y), z);
+    }
+    if (bsdf_.kind == BsdfKind::measured) {
+      bsdf_.measured->evaluate(w_out_, n, local.data(), f);
+    } else {
+      for (int i = 0; i < n; ++i) f[i] = zonal::evaluate(bsdf_, view_, local[i]);
+    }
+  }
+
+  void fill(Cell* cell) const;
+
+ private:
+  const Bsdf& bsdf_;
+  Map map_;
+  double cos_, sin_;
+  vec3 w_out_;
+  BsdfContext view_;
+};
+
+void Integrator::fill(Cell* cell) const {
+  const Rule& rule = Rule::get();
+  const double width = cell->t1 - cell->t0, height = cell->phi1 - cell->phi0, area = width * height;
+  std::array<double, kNodes> density;
+  for (int i = 0; i < kOrder; ++i) {
+    const double phi = cell->phi0 + height * rule.node[i];
+    for (int j = 0; j < kOrder; ++j) {
+      const int k = i * kOrder + j;
+      cell->w[k] = map_.at(cell->t0 + width * rule.node[j], phi, &density[k]);
+      cell->weight[k] = area * density[k] * rule.weight[i] * rule.weight[j];
+    }
+  }
+  evaluate(kNodes, cell->w.data(), cell->f.data());
+
+  std::array<std::array<double, kNodes>, kIntegrands> g;
+  for (int k = 0; k < kNodes; ++k) {
+    const vec3 f = cell->f[k];
+    const double sum = (double(f.x) + f.y + f.z) * density[k];
+    g[0][k] = sum, g[1][k] = sum * cell->w[k].z;
+    g[2][k] = (double(f.x) * f.x + double(f.y) * f.y + double(f.z) * f.z) * density[k];
+  }
+  for (int q = 0; q < kIntegrands; ++q) {
+    double total = 0, tail_t = 0, tail_phi = 0;
+    for (int a = 0; a < kOrder; ++a) {
+      double t4 = 0, t5 = 0, p4 = 0, p5 = 0, sum = 0;
+      for (int b = 0; b < kOrder; ++b) {
+        const double along_t = g[q][a * kOrder + b], along_phi = g[q][b * kOrder + a];
+        t4 += rule.fifth[b] * along_t, t5 += rule.sixth[b] * along_t;
+        p4 += rule.fifth[b] * along_phi, p5 += rule.sixth[b] * along_phi;
+        sum += rule.weight[b] * along_t;
+      }
+      tail_t += rule.weight[a] * (std::abs(t4) + std::abs(t5));
+      tail_phi += rule.weight[a] * (std::abs(p4) + std::abs(p5));
+      total += rule.weight[a] * sum;
+    }
+    cell->total[q] = area * total, cell->tail_t[q] = area * tail_t, cell->tail_phi[q] = area * tail_phi;
+  }
+}
+
+/// Splits [t0, t1] x [phi0, phi1] until half of a cell's width is less than `reach` on the sphere of w_in.
+void seed(const Map& map, double t0, double t1, double phi0, double phi1, double reach,
+          std::vector<Cell>* cells) {
+  const double t[3] = {t0, 0.5 * (t0 + t1), t1}, phi[3] = {phi0, 0.5 * (phi0 + phi1), phi1};
+  Direction w[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) w[i][j] = map.at(t[j], phi[i]);
+  double along_t = 0, along_phi = 0;
+  for (int i = 0; i < 3; ++i) {
+    along_t = std::max({along_t, chord(w[i][0], w[i][1]), chord(w[i][1], w[i][2])});
+    along_phi = std::max({along_phi, chord(w[0][i], w[1][i]), chord(w[1][i], w[2][i])});
+  }
+  if (std::max(along_t, along_phi) <= reach || std::max(t1 - t0, phi1 - phi0) < 1e-4) {
+    cells->push_back({.t0 = t0, .t1 = t1, .phi0 = phi0, .phi1 = phi1});
+  } else if (along_t > along_phi) {
+    seed(map, t0, t[1], phi0, phi1, reach, cells);
+    seed(map, t[1], t1, phi0, phi1, reach, cells);
+  } else {
+    seed(map, t0, t1, phi0, phi[1], reach, cells);
+    seed(map, t0, t1, phi[1], phi1, reach, cells);
+  }
+}
+
+/// Rings that narrow towards the highlight, so that none of width 1e-4 slips through, cut into cells.
+std::vector<Cell> seeds(const Map& map, bool half, double reach) {
+  std::vector<Cell> cells;
+  const int sectors = half ? 4 : 8;
+  for (int sector = 0; sector < sectors; ++sector) {
+    const double phi0 = sector * pi / 4, phi1 = (sector + 1) * pi / 4;
+    double t0 = 0;
+    for (int ring = -8; ring <= 0; ++ring) {
+      const double t1 = std::exp2(ring);
+      seed(map, t0, t1, phi0, phi1, reach, &cells);
+      t0 = t1;
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_out,
+                                 const HemisphereOptions& options) {
+  const Integrator integrator(bsdf, azimuth, theta_out);
+  std::vector<Cell> cells = seeds(integrator.map(), options.half, kPhase / options.resolve_bands);
+  HemisphereNodes nodes;
+  double total[kIntegrands] = {};
+  for (Cell& cell : cells) {
+    integrator.fill(&cell);
+    nodes.evaluations += kNodes;
+    for (int q = 0; q < kIntegrands; ++q) total[q] += cell.total[q];
+  }
+
+  // Halve the worst cell, along its worse side, until all are good or the budget is spent.
+  const auto error = [&](const Cell& cell) {
+    double worst = 0;
+    for (int q = 0; q < kIntegrands; ++q)
+      if (total[q] > 0) worst = std::max(worst, (cell.tail_t[q] + cell.tail_phi[q]) / total[q]);
+    return worst;
+  };
+  using Entry = std::pair<double, size_t>;
+  std::priority_queue<Entry> queue;
+  for (size_t i = 0; i < cells.size(); ++i) queue.push({error(cells[i]), i});
+  while (!queue.empty() && queue.top().first > options.tolerance &&
+         nodes.evaluations + 2 * kNodes <= size_t(options.most_nodes)) {
+    const size_t index = queue.top().second;
+    queue.pop();
+    const Cell& worst = cells[index];
+    double along_t = 0, along_phi = 0;
+    for (int q = 0; q < kIntegrands; ++q)
+      if (total[q] > 0) along_t += worst.tail_t[q] / total[q], along_phi += worst.tail_phi[q] / total[q];
+    Cell first{.t0 = worst.t0, .t1 = worst.t1, .phi0 = worst.phi0, .phi1 = worst.phi1}, second = first;
+    if (along_t > along_phi)
+      first.t1 = second.t0 = 0.5 * (worst.t0 + worst.t1);
+    else
+      first.phi1 = second.phi0 = 0.5 * (worst.phi0 + worst.phi1);
+    for (int q = 0; q < kIntegrands; ++q) total[q] -= worst.total[q];
+    for (Cell* cell : {&first, &second}) {
+      integrator.fill(cell);
+      nodes.evaluations += kNodes;
+      for (int q = 0; q < kIntegrands; ++q) total[q] += cell->total[q];
+    }
+    cells[index] = first;
+    cells.push_back(second);
+    queue.push({error(cells[index]), index});
+    queue.push({error(cells.back()), cells.size() - 1});
+  }
+
+  const size_t size = cells.size() * kNodes;
+  for (auto* v : {&nodes.x, &nodes.y, &nodes.z, &nodes.weight, &nodes.f[0], &nodes.f[1], &nodes.f[2]})
+    v->reserve(size);
+  const double factor = options.half ? 2 : 1;
+  for (const Cell& cell : cells) {
+    for (int k = 0; k < kNodes; ++k) {
+      const Direction w = cell.w[k];
+      const double weight = factor * cell.weight[k];
+      nodes.x.push_back(w.x), nodes.y.push_back(w.y), nodes.z.push_back(w.z), nodes.weight.push_back(weight);
+      double square = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double f = cell.f[k][c];
+        nodes.f[c].push_back(weight * f);
+        nodes.albedo[c] += weight * f * w.z;
+        square += f * f;
+      }
+      nodes.energy += weight * square, nodes.energy_cosine += weight * square * w.z * w.z;
+    }
+  }
+  return nodes;
+}
+
+double mirror_asymmetry(const Bsdf& bsdf, double theta_out) {
+  const Integrator integrator(bsdf, 0, theta_out);
+  double odd = 0, all = 0;
+  for (Cell& cell : seeds(integrator.map(), true, kPhase / 16)) {
+    integrator.fill(&cell);
+    std::array<vec3, kNodes> other;
+    for (Direction& w : cell.w) w.y = -w.y;
+    integrator.evaluate(kNodes, cell.w.data(), other.data());
+    for (int k = 0; k < kNodes; ++k)
+      for (int c = 0; c < 3; ++c) {
+        const double a = cell.f[k][c], b = other[k][c];
+        odd += cell.weight[k] * 0.25 * (a - b) * (a - b), all += cell.weight[k] * 0.5 * (a * a + b * b);
+      }
+  }
+  return all > 0 ? std::sqrt(odd / all) : 0;
+}
+
+}  // namespace zonal
