@@ -192,8 +192,10 @@ void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, cons
   for (int i = 0; i < tile.count; ++i)
     seeds[i] =
         hash32(pass_key_, static_cast<uint32_t>(tile.pixels[i].x), static_cast<uint32_t>(tile.pixels[i].y));
-  const TilePoints points(tile, seeds.data());
+  TilePoints points(tile, seeds.data());
   if (points.count == 0) return;
+  const std::unique_ptr<TileState> state = prepare_tile(points);
+  points.state = state.get();
 
   PointSums sums;
   Contributions c;
@@ -210,7 +212,8 @@ void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, cons
     if (accounts()) account(points, first, count, c, stats);
     add(points, count, c, sums);
   }
-  for (int k = 0; k < points.count; ++k) radiance[points.pixel[k]] += vec3(sums.r[k], sums.g[k], sums.b[k]);
+  for (int k = 0; k < points.count; ++k)
+    radiance[points.pixel[k]] += glm::max(vec3(sums.r[k], sums.g[k], sums.b[k]), vec3(0));
 }
 
 }  // namespace zonal

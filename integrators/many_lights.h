@@ -93,9 +93,13 @@ class ManyLights : public Integrator {
   /// What a method's options ask of the tracing beyond the shared parameters (texels kept, ...).
   virtual void adjust(VirtualLightOptions&) const {}
 
+  /// What `gather` finds in points.state: anything it would otherwise compute again for each block. Called
+  /// once a tile, from many threads.
+  virtual std::unique_ptr<TileState> prepare_tile(const TilePoints&) const { return nullptr; }
   /// Contributions of lights [first, first + count) to all points, in the order of loops `out.order` says
-  /// when it comes back; everything finite and >= 0. Exact zeros save their shadow rays. Called from many
-  /// threads.
+  /// when it comes back; everything finite. Exact zeros save their shadow rays. Negative ones, which
+  /// band-limited methods have, count against the positive ones: it is the sum over all lights that is cut
+  /// off at 0. Called from many threads.
   virtual void gather(const TilePoints& points, int first, int count, Contributions& out) const = 0;
   /// The same, summed over the lights into `sums` (added to what is there), where nothing occludes. Override
   /// it where a method sums faster than by way of the block.

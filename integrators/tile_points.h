@@ -12,6 +12,11 @@
 
 namespace zonal {
 
+/// What a method keeps of a tile's points for all its blocks of lights: see ManyLights::prepare_tile.
+struct TileState {
+  virtual ~TileState() = default;
+};
+
 struct TilePoints {
   using Floats = std::array<float, kTilePixels>;
 
@@ -24,6 +29,7 @@ struct TilePoints {
   alignas(64) Floats gx, gy, gz;                          ///< geometric normal, unit, on the camera's side
   alignas(64) Floats tx, ty, tz, bx, by, bz, nx, ny, nz;  ///< shading frame's x, y and z (the normal), world
   alignas(64) Floats ox, oy, oz;                          ///< unit, towards the camera, shading frame: oz > 0
+  const TileState* state = nullptr;                       ///< of ManyLights::prepare_tile
   std::array<BsdfContext, kTilePixels> view;              ///< of the camera's direction, for `evaluate`
 
   /// `seeds` of the tile's pixels; may be null: zeros.
