@@ -3,7 +3,8 @@
 ///
 ///     std::unique_ptr<MeasuredBrdf> nickel = load_merl("nickel.binary");
 ///
-/// docs/materials.md has the layout, how values between the samples are found, and what is done about negative ones.
+/// docs/materials.md has the layout, how values between the samples are found, and what is done about
+/// negative ones.
 
 #include <memory>
 #include <string>
@@ -17,7 +18,8 @@ namespace zonal {
 
 class MerlBrdf final : public MeasuredBrdf {
  public:
-  /// `cells`: 3 kMerlCells colours interleaved, 1/sr, by merl_index; what is negative or missing is repaired here.
+  /// `cells`: 3 kMerlCells colours interleaved, 1/sr, by merl_index; what is negative or missing is repaired
+  /// here.
   explicit MerlBrdf(std::vector<float> cells);
 
   using MeasuredBrdf::evaluate;
@@ -28,17 +30,19 @@ class MerlBrdf final : public MeasuredBrdf {
   bool isotropic() const override { return true; }
   const char* format() const override { return "MERL"; }
 
-  /// The sample of the cell that holds the directions, nothing interpolated: how the database's own reader looks up.
+  /// The sample of the cell that holds the directions, nothing interpolated: how the database's own reader
+  /// looks up.
   vec3 nearest(vec3 w_out, vec3 w_in) const;
   /// One sample after repair, 1/sr.
   vec3 cell(int h, int d, int p) const;
 
-  /// Light reflected of what arrives from one direction, per channel, about 1 % exact: the elevation that reflects
-  /// most. Above 1 where the measurement claims so; nothing is scaled down.
+  /// Light reflected of what arrives from one direction, per channel, about 1 % exact: the elevation that
+  /// reflects most. Above 1 where the measurement claims so; nothing is scaled down.
   vec3 largest_albedo{0};
   float largest_albedo_degrees = 0;  ///< polar angle of that direction
 
-  /// Cells whose centre has a direction below the horizon and that hold nothing: filled from the nearest theta_d above.
+  /// Cells whose centre has a direction below the horizon and that hold nothing: filled from the nearest
+  /// theta_d above.
   size_t cells_below_horizon = 0;
 
  protected:
@@ -52,8 +56,8 @@ class MerlBrdf final : public MeasuredBrdf {
   vec3 interpolate(MerlPoint point) const;
 };
 
-/// Reads a MERL file whole. Throws SceneError naming the file, the field, what was found and what was expected; header
-/// and exact size are checked before anything is allocated.
+/// Reads a MERL file whole. Throws SceneError naming the file, the field, what was found and what was
+/// expected; header and exact size are checked before anything is allocated.
 std::unique_ptr<MeasuredBrdf> load_merl(const std::string& file);
 
 }  // namespace zonal

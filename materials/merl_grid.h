@@ -1,11 +1,13 @@
 #pragma once
 /// Where a pair of directions lies in a MERL table: Rusinkiewicz's half and difference angles, in cells.
 ///
-///     MerlPoint p = merl_point(half_difference(w_out, w_in));   // p.h = 0 .. 90, p.d = 0 .. 90, p.p = 0 .. 180
+///     MerlPoint p = merl_point(half_difference(w_out, w_in));   // p.h = 0 .. 90, p.d = 0 .. 90, p.p = 0 ..
+///     180
 ///
-/// A table holds 90 x 90 x 180 colours over (theta_h, theta_d, phi_d) (Matusik et al. 2003): theta_h = (x/90)^2 90
-/// degrees, so that cells are dense around the mirror direction, the other two in cells of one degree. phi_d has period
-/// pi, which is reciprocity. Everything is symmetric under exchange of the directions to the last bit.
+/// A table holds 90 x 90 x 180 colours over (theta_h, theta_d, phi_d) (Matusik et al. 2003): theta_h =
+/// (x/90)^2 90 degrees, so that cells are dense around the mirror direction, the other two in cells of one
+/// degree. phi_d has period pi, which is reciprocity. Everything is symmetric under exchange of the
+/// directions to the last bit.
 
 #include <array>
 
@@ -23,7 +25,8 @@ inline constexpr size_t merl_index(int h, int d, int p) {
   return (size_t(h) * kMerlThetaD + size_t(d)) * kMerlPhiD + size_t(p);
 }
 
-/// Sum and difference of two unit directions: 2 cos(theta_d) h and 2 sin(theta_d) times the tangent of their circle.
+/// Sum and difference of two unit directions: 2 cos(theta_d) h and 2 sin(theta_d) times the tangent of their
+/// circle.
 struct HalfDifference {
   vec3 sum, difference;  ///< perpendicular
   float rho;             ///< length of the part of `sum` in the surface's plane, [0, 2]
@@ -43,8 +46,8 @@ struct MerlPoint {
   float h, d, p;  ///< [0, 90], [0, 90], [0, 180]
 };
 
-/// Arc tangent of y/x in [0, pi/2] for y, x >= 0; 0 where both are 0. Absolute error 1e-8 before rounding (Chebyshev
-/// interpolation of atan(t)/t in t^2 over [0, 1]); branch-free, so that loops over it vectorise.
+/// Arc tangent of y/x in [0, pi/2] for y, x >= 0; 0 where both are 0. Absolute error 1e-8 before rounding
+/// (Chebyshev interpolation of atan(t)/t in t^2 over [0, 1]); branch-free, so that loops over it vectorise.
 inline float quadrant_angle(float y, float x) {
   const float small = y < x ? y : x, large = y < x ? x : y;
   const float t = small / (large > 0.0f ? large : 1.0f), t2 = t * t;
@@ -63,7 +66,8 @@ inline float quadrant_angle(float y, float x) {
 
 /// Angles from lengths, never from an arc cosine, which knows nothing of angles below 0.02 degrees.
 inline MerlPoint merl_point(const HalfDifference& a) {
-  // The frame of the half vector: x towards larger theta_h, y = (-sin phi_h, cos phi_h, 0). Where theta_h = 0, phi_h = 0.
+  // The frame of the half vector: x towards larger theta_h, y = (-sin phi_h, cos phi_h, 0). Where theta_h =
+  // 0, phi_h = 0.
   const bool upright = !(a.rho > 0.0f);
   const float cosine = upright ? 1.0f : a.sum.x / a.rho, sine = upright ? 0.0f : a.sum.y / a.rho;
   const float outward = cosine * a.difference.x + sine * a.difference.y;

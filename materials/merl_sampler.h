@@ -1,14 +1,15 @@
 #pragma once
-/// Draws directions for a tabulated isotropic BRDF: a mixture of a cosine lobe and of half vectors from a table.
+/// Draws directions for a tabulated isotropic BRDF: a mixture of a cosine lobe and of half vectors from a
+/// table.
 ///
 ///     MerlSampler sampler(brdf);                      // some milliseconds
 ///     vec3 w_in = sampler.sample(w_out, u_lobe, u);   // z <= 0: none found
 ///     float density = sampler.pdf(w_out, w_in, half_difference(w_out, w_in));
 ///
-/// For each of 32 elevations of w_out the BRDF is split into a constant floor, which the cosine lobe draws, and the
-/// rest, which is tabulated over the half vector: MERL's 90 rings of theta_h by 16 sectors of azimuth around w_out, with
-/// f cos(theta_in) 4 (w_out . h), the quantity whose integral over half vectors is the light reflected. Were the
-/// cells infinitely small, f cos / pdf would be the albedo everywhere.
+/// For each of 32 elevations of w_out the BRDF is split into a constant floor, which the cosine lobe draws,
+/// and the rest, which is tabulated over the half vector: MERL's 90 rings of theta_h by 16 sectors of azimuth
+/// around w_out, with f cos(theta_in) 4 (w_out . h), the quantity whose integral over half vectors is the
+/// light reflected. Were the cells infinitely small, f cos / pdf would be the albedo everywhere.
 
 #include <functional>
 #include <vector>
