@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/sampling.h"
-#include "lights/emission_grid.h"
+#include "lights/light_grid.h"
 
 namespace zonal {
 
@@ -24,7 +24,8 @@ struct Plan {
   struct Grid {
     EmissionGrid cells;
     uint32_t light;
-    uint32_t first;  ///< number of the first cell's path
+    uint32_t first;       ///< number of the first cell's path
+    uint32_t first_face;  ///< index of its (first face's) VirtualLightGrid
   };
   struct Path {
     uint32_t light;
@@ -33,7 +34,7 @@ struct Plan {
   };
   std::vector<Grid> grids;
   std::vector<Path> paths;
-  uint32_t cells = 0;  ///< of all grids
+  uint32_t cells = 0, faces = 0;  ///< of all grids
 
   uint32_t size() const { return cells + static_cast<uint32_t>(paths.size()); }
 };
@@ -77,9 +78,10 @@ Plan make_plan(const Scene& scene, const VirtualLightOptions& options, uint32_t 
     if (!(power > 0) || !std::isfinite(power)) continue;
     const double share = count * (power / by_power.total());
     if (share >= 1 && EmissionGrid::suits(*lights[i])) {
-      const EmissionGrid grid(*lights[i], share);
+      const EmissionGrid grid(*lights[i], share, options.block_texels);
       if (grid.cells() <= 2 * share) {
-        plan.grids.push_back({grid, i, plan.cells});
+        plan.grids.push_back({grid, i, plan.cells, plan.faces});
+        plan.faces += static_cast<uint32_t>(grid.faces());
         plan.cells += static_cast<uint32_t>(grid.cells());
         continue;
       }
@@ -92,79 +94,91 @@ Plan make_plan(const Scene& scene, const VirtualLightOptions& options, uint32_t 
   return plan;
 }
 
-/// The first ray of path number `j` and the numbers for the rest of it. Every draw is of a fixed dimension.
-EmissionSample begin_path(const Scene& scene, const Plan& plan, const VirtualLightOptions& options,
-                          uint32_t j, uint32_t* light, Sampler* sampler) {
-  const uint64_t seed = options.seed + kSeedOffset;
-  if (j < plan.cells) {
-    const auto after =
-        std::upper_bound(plan.grids.begin(), plan.grids.end(), j,
-                         [](uint32_t number, const Plan::Grid& g) { return number < g.first; });
-    const Plan::Grid& grid = *(after - 1);
-    const uint32_t cell = j - grid.first;
-    // Inside a cell the passes are stratified; beyond the first surface the cells of all passes are.
-    *light = grid.light;
-    *sampler =
-        Sampler(seed, hash32(grid.light, 1), options.pass * static_cast<uint32_t>(grid.cells.cells()) + cell);
-    Sampler jitter(seed, hash32(grid.light, 2, cell), options.pass);
-    return grid.cells.sample(static_cast<int>(cell), jitter.next_2d());
-  }
-  const Plan::Path& path = plan.paths[j - plan.cells];
-  *light = path.light;
-  *sampler = Sampler(seed, hash32(path.light, 3), path.index);
+/// The first ray of a path and the numbers for the rest of it. Every draw is of a fixed dimension.
+EmissionSample begin_path(const Scene& scene, const Plan::Path& path, const VirtualLightOptions& options,
+                          Sampler* sampler) {
+  *sampler = Sampler(options.seed + kSeedOffset, hash32(path.light, 3), path.index);
   const vec2 u_position = sampler->next_2d(), u_direction = sampler->next_2d();
   EmissionSample ray = scene.lights()[path.light]->sample_emission(u_position, u_direction);
   ray.power *= path.weight;
   return ray;
 }
 
-/// Stores a virtual light where the path meets a surface, up to `bounces` times.
-void follow_path(const Scene& scene, EmissionSample ray, uint32_t primary, int bounces, Sampler sampler,
+/// Stores `light` and what its flux leaves at the surfaces it reaches after it, up to `bounces` in all.
+void follow_path(const Scene& scene, const VirtualLight& light, int bounces, Sampler sampler,
                  VirtualLightSet* out) {
-  float primary_distance = 0;
-  for (int bounce = 1; bounce <= bounces && !is_black(ray.power); ++bounce) {
-    const Hit hit = scene.intersect(ray.origin, ray.direction);
-    ++out->rays;
-    if (!hit.found()) return;
-    if (bounce == 1) primary_distance = hit.t;
-
-    const Surface s = scene.surface(hit, ray.direction);
-    const Bsdf bsdf = scene.bsdf(s);
-    const float cos_shading = glm::dot(s.shading.z, s.w_out), cos_geometric = glm::dot(s.normal, s.w_out);
-    if (bsdf.kind == BsdfKind::black || !(cos_shading > 0) || !(cos_geometric > 0)) return;
-    const vec3 power = ray.power * (cos_shading / cos_geometric);
-    out->lights.push_back({s.position, s.normal, s.shading, s.w_out, power, bsdf,
-                           static_cast<uint32_t>(bounce), primary, primary_distance, s.material,
-                           offset_origin(s, s.normal)});
-    if (bounce == bounces) return;
-
+  out->lights.push_back(light);
+  VirtualLight v = light;
+  for (int bounce = 2; bounce <= bounces && !is_black(v.power); ++bounce) {
     // Reflect the flux: f cos/pdf is asked with the shading cosine, light that leaves counts by the geometric
     // one.
     const float u_lobe = sampler.next_1d();
     const vec2 u = sampler.next_2d();
-    const BsdfSample next =
-        sample(bsdf, prepare(bsdf, s.shading.to_local(s.w_out), PathEnd::light), u_lobe, u);
+    const BsdfContext view = prepare(v.bsdf, v.frame.to_local(v.w_in), PathEnd::light);
+    const BsdfSample next = sample(v.bsdf, view, u_lobe, u);
     if (!(next.pdf > 0) || !(next.w_in.z > 0)) return;
-    const vec3 w = s.shading.to_world(next.w_in);
-    const float leaving = glm::dot(s.normal, w);
+    const vec3 w = v.frame.to_world(next.w_in);
+    const float leaving = glm::dot(v.normal, w);
     if (!(leaving > 0)) return;
-    const vec3 reflected = power * next.weight * (leaving / next.w_in.z);
+    const vec3 reflected = v.power * next.weight * (leaving / next.w_in.z);
 
     // Russian roulette by what the surface reflects: later lights are fewer, not weaker.
-    const float survival = std::fmin(1.0f, max_component(reflected) / max_component(power));
+    const float survival = std::fmin(1.0f, max_component(reflected) / max_component(v.power));
     if (!(sampler.next_1d() < survival)) return;
-    ray = {offset_origin(s, w), w, reflected / survival};
+    const EmissionSample ray{v.shadow_point, w, reflected / survival};
+    const auto landed = land(scene, ray, &out->rays);
+    if (!landed) return;
+    v = *landed;
+    v.bounce = static_cast<uint32_t>(bounce), v.primary = light.primary;
+    v.primary_distance = light.primary_distance;
+    out->lights.push_back(v);
   }
+}
+
+/// Follows one cell's block of rays as one path.
+void follow_cell(const Scene& scene, const Plan::Grid& grid, uint32_t cell,
+                 const VirtualLightOptions& options, VirtualLightSet* out) {
+  const uint64_t seed = options.seed + kSeedOffset;
+  const auto cells = static_cast<uint32_t>(grid.cells.cells()), per_face = cells / grid.cells.faces();
+  const auto first_texel = static_cast<uint32_t>(out->texels.size());
+  const CellJob job{static_cast<int>(cell), grid.light, seed, options.pass, options.placement};
+  auto light =
+      light_of_cell(scene, grid.cells, job, options.keep_texels ? &out->texels : nullptr, &out->rays);
+  if (!light) return;
+  light->primary = grid.light;
+  light->grid = grid.first_face + cell / per_face;
+  light->cell = cell % per_face;
+  light->first_texel = first_texel;
+  light->texel_count = static_cast<uint32_t>(out->texels.size()) - first_texel;
+  for (size_t i = first_texel; i < out->texels.size(); ++i) {
+    VirtualLight& texel = out->texels[i];
+    texel.primary = grid.light, texel.grid = light->grid, texel.cell = light->cell;
+  }
+  // Inside a cell the passes are stratified; beyond the first surface the cells of all passes are.
+  follow_path(scene, *light, options.bounces,
+              Sampler(seed, hash32(grid.light, 1), options.pass * cells + cell), out);
 }
 
 /// Follows the plan's paths numbered [first, end).
 void follow_paths(const Scene& scene, const Plan& plan, const VirtualLightOptions& options, uint32_t first,
                   uint32_t end, VirtualLightSet* out) {
   for (uint32_t j = first; j < end; ++j) {
-    uint32_t light = 0;
+    if (j < plan.cells) {
+      const auto after =
+          std::upper_bound(plan.grids.begin(), plan.grids.end(), j,
+                           [](uint32_t number, const Plan::Grid& g) { return number < g.first; });
+      const Plan::Grid& grid = *(after - 1);
+      follow_cell(scene, grid, j - grid.first, options, out);
+      continue;
+    }
+    const Plan::Path& path = plan.paths[j - plan.cells];
     Sampler sampler;
-    const EmissionSample ray = begin_path(scene, plan, options, j, &light, &sampler);
-    follow_path(scene, ray, light, options.bounces, sampler, out);
+    const EmissionSample ray = begin_path(scene, path, options, &sampler);
+    if (is_black(ray.power)) continue;
+    if (auto light = land(scene, ray, &out->rays)) {
+      light->primary = path.light;
+      follow_path(scene, *light, options.bounces, sampler, out);
+    }
   }
 }
 
@@ -173,6 +187,7 @@ void follow_paths(const Scene& scene, const Plan& plan, const VirtualLightOption
 uint32_t paths_wanted(const Scene& scene, VirtualLightOptions options) {
   const auto lights = static_cast<double>(options.lights);
   options.seed = kPilotSeed, options.pass = 0;
+  options.block_texels = 1, options.keep_texels = false;
   const Plan plan = make_plan(scene, options, kPilotPaths);
   VirtualLightSet pilot;
   follow_paths(scene, plan, options, 0, plan.size(), &pilot);
@@ -184,11 +199,14 @@ uint32_t paths_wanted(const Scene& scene, VirtualLightOptions options) {
 std::string missed_warning(const Scene& scene) {
   std::string names;
   size_t listed = 0, lit = 0;
-  for (const auto& light : scene.lights()) {
+  for (size_t index = 0; index < scene.lights().size(); ++index) {
+    const auto& light = scene.lights()[index];
     if (is_black(light->power())) continue;
     ++lit;
     if (listed == 3) continue;
-    names += fmt::format("{}{} \"{}\"", listed++ ? ", " : "", light->type(), light->name);
+    names += fmt::format(
+        "{}{} {}", listed++ ? ", " : "", light->type(),
+        light->name.empty() ? fmt::format("light {}", index) : fmt::format("\"{}\"", light->name));
   }
   if (lit == 0) return "no light of the scene emits anything: there are no virtual lights";
   if (lit > listed) names += fmt::format(" and {} more", lit - listed);
@@ -216,6 +234,28 @@ std::array<uint32_t, 8> VirtualLightSet::neighbours(uint32_t light) const {
   return found;
 }
 
+namespace {
+
+void join(const std::vector<VirtualLightSet>& parts, VirtualLightSet* set) {
+  size_t lights = 0, texels = 0;
+  for (const VirtualLightSet& part : parts) lights += part.lights.size(), texels += part.texels.size();
+  set->lights.reserve(lights), set->texels.reserve(texels);
+  for (const VirtualLightSet& part : parts) {
+    const auto first_texel = static_cast<uint32_t>(set->texels.size());
+    set->texels.insert(set->texels.end(), part.texels.begin(), part.texels.end());
+    for (VirtualLight light : part.lights) {
+      if (light.grid != kNone) {
+        set->grids[light.grid].at[light.cell] = static_cast<uint32_t>(set->lights.size());
+        light.first_texel += first_texel;
+      }
+      set->lights.push_back(light);
+    }
+    set->rays += part.rays;
+  }
+}
+
+}  // namespace
+
 VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOptions& options,
                                     const Stop& stop) {
   VirtualLightSet set;
@@ -227,20 +267,22 @@ VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOption
   if (strongest != plan.grids.end())
     set.columns = strongest->cells.columns(), set.rows = strongest->cells.rows();
 
+  for (const Plan::Grid& grid : plan.grids) {
+    const auto cells = static_cast<size_t>(grid.cells.columns()) * grid.cells.rows();
+    for (int face = 0; face < grid.cells.faces(); ++face)
+      set.grids.push_back({grid.light, grid.cells.columns(), grid.cells.rows(), grid.cells.fov(),
+                           std::vector<uint32_t>(cells, kNone)});
+  }
+
   // Each task fills its own part; joined in order they are the same on any number of threads.
-  std::vector<VirtualLightSet> parts((plan.size() + kChunk - 1) / kChunk);
+  const uint32_t chunk = std::max(1u, kChunk / static_cast<uint32_t>(sqr(options.block_texels)));
+  std::vector<VirtualLightSet> parts((plan.size() + chunk - 1) / chunk);
   tbb::parallel_for(size_t{0}, parts.size(), [&](size_t part) {
     if (stop()) return;
-    const auto first = static_cast<uint32_t>(part) * kChunk, end = std::min(plan.size(), first + kChunk);
+    const auto first = static_cast<uint32_t>(part) * chunk, end = std::min(plan.size(), first + chunk);
     follow_paths(scene, plan, options, first, end, &parts[part]);
   });
-  size_t count = 0;
-  for (const VirtualLightSet& part : parts) count += part.lights.size();
-  set.lights.reserve(count);
-  for (const VirtualLightSet& part : parts) {
-    set.lights.insert(set.lights.end(), part.lights.begin(), part.lights.end());
-    set.rays += part.rays;
-  }
+  join(parts, &set);
   if (set.lights.empty() && !stop()) set.warnings.push_back(missed_warning(scene));
   return set;
 }
