@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/loading.h"
+#include "materials/measured_brdf.h"
 
 namespace zonal {
 namespace {
@@ -139,10 +141,17 @@ std::unique_ptr<Material> metallic_roughness(Loading& loading, Fields& fields) {
   return m;
 }
 
+std::unique_ptr<Material> measured(Loading& loading, Fields& fields) {
+  auto m = std::make_unique<MeasuredMaterial>();
+  loading.measured.add(loading.resolve(fields.text("file"), fields.at("file")), fields.at("file"), m.get());
+  return m;
+}
+
 using Reader = std::unique_ptr<Material> (*)(Loading&, Fields&);
-const std::array<std::string, 5> kKinds{"lambert", "blinn_phong", "conductor", "coated",
-                                        "metallic_roughness"};
-constexpr std::array<Reader, 5> kReaders{lambert, blinn_phong, conductor, coated, metallic_roughness};
+const std::array<std::string, 6> kKinds{"lambert", "blinn_phong",        "conductor",
+                                        "coated",  "metallic_roughness", "measured"};
+constexpr std::array<Reader, 6> kReaders{lambert, blinn_phong,        conductor,
+                                         coated,  metallic_roughness, measured};
 
 /// Keys every kind has.
 void read_common(Loading& loading, Fields& fields, Material& m) {
@@ -185,6 +194,31 @@ void read_materials(Loading& loading, const json& list, const std::string& where
     loading.material_used.push_back(false);
     loading.parts.materials.push_back(std::move(material));
   }
+}
+
+void MeasuredSlots::add(const std::string& file, const std::string& where, MeasuredMaterial* slot) {
+  Request& request = requests_[file];
+  if (request.slots.empty()) request.where = where;
+  request.slots.push_back(slot);
+}
+
+void MeasuredSlots::load_all() {
+  for (const auto& [file, request] : requests_) {
+    try {
+      const std::shared_ptr<const MeasuredBrdf> brdf = load_measured(file);
+      for (MeasuredMaterial* slot : request.slots) slot->brdf = brdf;
+    } catch (const SceneError& error) {
+      throw SceneError(request.where + ": " + error.what());
+    }
+  }
+}
+
+uint32_t Loading::find_material(const std::string& name) {
+  const auto found = std::find(material_names.begin(), material_names.end(), name);
+  if (found == material_names.end()) return kNone;
+  const auto index = found - material_names.begin();
+  material_used[static_cast<size_t>(index)] = true;
+  return static_cast<uint32_t>(index);
 }
 
 uint32_t Loading::grey() {

@@ -29,11 +29,7 @@ struct Common {
 std::optional<uint32_t> read_material_name(Loading& loading, Fields& fields) {
   if (!fields.find("material")) return std::nullopt;
   const std::string name = fields.text("material");
-  for (size_t i = 0; i < loading.material_names.size(); ++i)
-    if (loading.material_names[i] == name) {
-      loading.material_used[i] = true;
-      return static_cast<uint32_t>(i);
-    }
+  if (const uint32_t index = loading.find_material(name); index != kNone) return index;
   const std::string known = loading.material_names.empty() ? " (\"materials\" defines none)"
                                                            : did_you_mean(name, loading.material_names);
   fields.fail("material", fmt::format("found {}, expected the name of a material{}", in_quotes(name), known));

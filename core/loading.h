@@ -14,6 +14,7 @@
 #include "core/scene.h"
 #include "core/scene_loader.h"
 #include "core/transform.h"
+#include "materials/material.h"
 
 namespace zonal {
 
@@ -43,6 +44,21 @@ class TextureSlots {
   };
   std::vector<Request> requests_;
   std::map<std::pair<std::string, Texture::Encoding>, size_t> index_;
+};
+
+/// Measured materials asked for: like pictures, each file is read once, after the scene file itself has been checked.
+class MeasuredSlots {
+ public:
+  void add(const std::string& file, const std::string& where, MeasuredMaterial* slot);
+  /// Throws SceneError naming the place that asked first.
+  void load_all();
+
+ private:
+  struct Request {
+    std::string where;
+    std::vector<MeasuredMaterial*> slots;
+  };
+  std::map<std::string, Request> requests_;
 };
 
 /// "emission" of an object, or the same keys of a light.
@@ -75,6 +91,7 @@ struct Loading {
   std::string folder;  ///< anchors relative paths
   SceneParts parts;
   TextureSlots textures;
+  MeasuredSlots measured;
   std::vector<PendingImport> imports;
   std::vector<ImportedCameras> imported_cameras;
 
@@ -84,6 +101,8 @@ struct Loading {
 
   /// The file a key names: relative to the scene, ${ZONAL_DATA} expanded, known to exist. Throws SceneError.
   std::string resolve(const std::string& text, const std::string& where) const;
+  /// Index of the material an object names, which counts as used from then on; kNone when there is none.
+  uint32_t find_material(const std::string& name);
   /// Index of a material, made on first use: the grey everything has that names none, and the black of bare
   /// lights.
   uint32_t grey();

@@ -77,6 +77,7 @@ Scene parse(const std::string& text, const std::string& file, const LoadOptions&
   const bool own_camera = !camera.is_object() || !camera.contains("from");
   if (own_camera) loading.parts.camera = read_camera(loading, camera, fields.at("camera"), options);
   loading.textures.load_all(loading.parts.textures);
+  loading.measured.load_all();
   import_meshes(loading);
   if (!own_camera) loading.parts.camera = read_camera(loading, camera, fields.at("camera"), options);
   add_notes(loading);

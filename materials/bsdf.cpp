@@ -65,11 +65,15 @@ inline void evaluate_both(const Bsdf& b, const BsdfContext& view, vec3 w_in, Lob
     }
 
     case BsdfKind::measured:
-      // Not divided into lobes: all of it counts as specular.
-      if (has(lobes, Lobes::specular)) {
-        *f = view.end == PathEnd::camera ? b.measured->evaluate(w_out, w_in) : b.measured->evaluate(w_in, w_out);
+      // Not divided into lobes: all of it counts as specular. Value and density share a search where the ends allow it.
+      if (!has(lobes, Lobes::specular)) {
+        *pdf = b.measured->pdf(w_out, w_in);
+      } else if (view.end == PathEnd::camera) {
+        b.measured->evaluate_with_pdf(w_out, w_in, f, pdf);
+      } else {
+        *f = b.measured->evaluate(w_in, w_out);
+        *pdf = b.measured->pdf(w_out, w_in);
       }
-      *pdf = b.measured->pdf(w_out, w_in);
       return;
 
     case BsdfKind::conductor:
@@ -138,6 +142,10 @@ BsdfContext prepare(const Bsdf& b, vec3 w_out, PathEnd end) {
 }
 
 vec3 evaluate(const Bsdf& b, const BsdfContext& view, vec3 w_in, Lobes lobes) {
+  if (b.kind == BsdfKind::measured) {  // its density is another search, which the compiler cannot drop
+    if (!has(lobes, Lobes::specular) || !above_horizon(view.w_out) || !above_horizon(w_in)) return vec3(0.0f);
+    return view.end == PathEnd::camera ? b.measured->evaluate(view.w_out, w_in) : b.measured->evaluate(w_in, view.w_out);
+  }
   vec3 f;
   float unused;
   evaluate_both(b, view, w_in, lobes, &f, &unused);

@@ -94,7 +94,9 @@ TEST(schema, materials) {
       ADD_FAILURE() << "the schema has no material " << kind.name;
       continue;
     }
-    const json scene = {{"materials", {{{"name", "m"}, {"type", kind.name}}}}};
+    json scene = {{"materials", {{{"name", "m"}, {"type", kind.name}}}}};
+    // Its file is required, and read only once the rest of the scene has been found right: any existing one will do.
+    if (kind.name == "measured") scene["materials"][0]["file"] = "flat.png";
     expect_same({"material_" + kind.name}, scene, "/materials/0");
   }
 }
