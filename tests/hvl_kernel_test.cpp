@@ -10,10 +10,13 @@
 
 namespace zonal {
 namespace kernel {
-#include "integrators/hvl/hvl.glsl"
-#include "materials/zonal_lobes.glsl"
+// Each needs those before it.
+// clang-format off
 #include "sh/basis.glsl"
 #include "sh/sphere_light.glsl"
+#include "materials/zonal_lobes.glsl"
+#include "integrators/hvl/hvl.glsl"
+// clang-format on
 }  // namespace kernel
 namespace {
 
