@@ -28,6 +28,7 @@ void add_render(CLI::App& app, int* exit_code);
 void add_compare(CLI::App& app, int* exit_code);
 void add_list(CLI::App& app, int* exit_code);
 void add_reference(CLI::App& app, int* exit_code);
+void add_sweep(CLI::App& app, int* exit_code);
 void add_verify(CLI::App& app, int* exit_code);
 
 /// Set by the first Ctrl-C (or SIGTERM) after `catch_interrupts`; the second ends the program at once.

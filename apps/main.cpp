@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_compare(app, &exit_code);
   add_list(app, &exit_code);
   add_reference(app, &exit_code);
+  add_sweep(app, &exit_code);
   add_verify(app, &exit_code);
 
   try {

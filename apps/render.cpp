@@ -18,12 +18,12 @@ namespace zonal {
 namespace {
 
 struct Options {
-  std::string scene, integrator, size, stats, backend = "cpu";
+  std::string scene, integrator, size, stats, snapshots, backend = "cpu";
   std::vector<std::string> outputs, settings;
   int passes = 0, threads = 0, frame = 0;
   double seconds = 0;
   uint64_t seed = 0;
-  bool quiet = false;
+  bool quiet = false, pin = false;
   RenderOptions::Pixels pixels = RenderOptions::Pixels::automatic;
 };
 
@@ -67,6 +67,7 @@ int render_command(const Options& options) {
   if (!options.size.empty()) parse_size(options.size, &load.width, &load.height);
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty()) outputs = {std::filesystem::path(options.scene).stem().string() + ".exr"};
+  if (outputs == std::vector<std::string>{"none"}) outputs.clear();
   for (const std::string& file : outputs) check_writable(file);
   if (!options.stats.empty()) check_writable_text(options.stats);
 
@@ -86,10 +87,18 @@ int render_command(const Options& options) {
   Budget budget{.passes = options.passes, .seconds = options.seconds};
   if (budget.passes == 0 && budget.seconds == 0) budget.passes = file.passes > 0 ? file.passes : kDefaultPasses;
   const RenderOptions render_options{.seed = options.seed, .threads = options.threads,
-                                     .pixels = options.pixels, .stop = &stop_asked()};
+                                     .pixels = options.pixels, .stop = &stop_asked(), .pin = options.pin};
   Film film(scene.camera().width, scene.camera().height);
   ProgressPrinter progress(fmt::format("{} {}", scene.name(), name), options.quiet);
-  const RenderReport report = render(scene, *integrator, film, budget, render_options, {},
+  // After 1, 2, 4, ... passes, outside the clock: the whole course of the error from one run.
+  const auto snapshot = [&](const Film& so_far, double seconds) {
+    if (options.snapshots.empty() || (so_far.passes() & (so_far.passes() - 1)) != 0) return;
+    ImageFile picture{.layers = {{"", so_far.radiance()}}};
+    picture.metadata["seconds"] = fmt::format("{:.9g}", seconds);
+    picture.metadata["exposure"] = fmt::format("{:.9g}", scene.camera().exposure);
+    write_image(fmt::format("{}-{:05}.exr", options.snapshots, so_far.passes()), picture, 1);
+  };
+  const RenderReport report = render(scene, *integrator, film, budget, render_options, snapshot,
                                      [&](const Progress& p) { progress.update(p); });
   progress.finish();
   for (const std::string& warning : report.pass.warnings) fmt::print(stderr, "warning: {}\n", warning);
@@ -155,9 +164,12 @@ void add_render(CLI::App& app, int* exit_code) {
   command->add_option("--seed", options->seed, "random seed");
   command->add_option("--frame", options->frame, "frame of a scene with keyframes");
   command->add_option("--backend", options->backend, "cpu");
-  command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again")
+  command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again; none: no picture")
       ->allow_extra_args(false);
   command->add_option("--stats", options->stats, "JSON file for settings, times and counters");
+  command->add_option("--snapshots", options->snapshots,
+                      "also write PREFIX-00001.exr, -00002, -00004, ... after so many passes, outside the clock");
+  command->add_flag("--pin", options->pin, "keep each thread on one core: steadier times");
   add_pixels_option(*command, &options->pixels);
   command->add_flag("--quiet", options->quiet, "print errors and warnings only");
   command->callback([=] { *exit_code = render_command(*options); });

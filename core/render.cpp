@@ -4,9 +4,12 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <oneapi/tbb/task_scheduler_observer.h>
+#include <sched.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <optional>
 #include <mutex>
 
 namespace zonal {
@@ -58,6 +61,36 @@ struct TileGrid {
   int count() const { return columns * rows; }
 };
 
+/// Keeps the threads of an arena each on a core of its own, as long as it lives. The caller's thread is one of them and
+/// gets its freedom back.
+class Pinning : public oneapi::tbb::task_scheduler_observer {
+ public:
+  explicit Pinning(oneapi::tbb::task_arena& arena) : task_scheduler_observer(arena) {
+    sched_getaffinity(0, sizeof allowed_, &allowed_);
+    observe(true);
+  }
+  ~Pinning() override {
+    observe(false);
+    sched_setaffinity(0, sizeof allowed_, &allowed_);
+  }
+  void on_scheduler_entry(bool) override {
+    // The arena's slot picks among the cores this process may use.
+    const int slot = oneapi::tbb::this_task_arena::current_thread_index();
+    int left = slot % std::max(1, CPU_COUNT(&allowed_));
+    for (int core = 0; core < CPU_SETSIZE; ++core) {
+      if (!CPU_ISSET(core, &allowed_) || left-- > 0) continue;
+      cpu_set_t one;
+      CPU_ZERO(&one);
+      CPU_SET(core, &one);
+      sched_setaffinity(0, sizeof one, &one);
+      return;
+    }
+  }
+
+ private:
+  cpu_set_t allowed_;
+};
+
 }  // namespace
 
 void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t seed, int pass, bool jitter,
@@ -80,7 +113,7 @@ void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t
 }
 
 RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
-                    const RenderOptions& options, const std::function<void(const Film&)>& on_pass,
+                    const RenderOptions& options, const std::function<void(const Film&, double)>& on_pass,
                     const std::function<void(const Progress&)>& on_progress) {
   RenderReport report;
   Camera camera = scene.camera();
@@ -92,6 +125,8 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
   const int threads = options.threads > 0 ? options.threads : oneapi::tbb::info::default_concurrency();
   oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   oneapi::tbb::task_arena arena(threads);
+  std::optional<Pinning> pinning;
+  if (options.pin) pinning.emplace(arena);
 
   const TileGrid grid(film.width(), film.height());
   std::vector<TileStats> tile_stats(grid.count());
@@ -170,7 +205,7 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
     report.passes = film.passes();
     for (const TileStats& stats : tile_stats) add_counters(report.counters, stats);
     if (cut) break;
-    if (on_pass) on_pass(film);
+    if (on_pass) on_pass(film, report.begin_pass_seconds + report.radiance_seconds);
   }
   return report;
 }

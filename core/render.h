@@ -24,6 +24,7 @@ struct RenderOptions {
   /// timed render cannot know how many passes it will have, and jitters.
   enum class Pixels { automatic, center, jitter } pixels = Pixels::automatic;
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler or another thread
+  bool pin = false;  ///< each thread stays on one core: steadier times
 };
 
 struct RenderReport {
@@ -46,9 +47,9 @@ struct Progress {
 void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t seed, int pass, bool jitter,
                 Tile* tile, Sampler* samplers);
 
-/// `on_pass` runs after each finished pass, outside the clock; `on_progress` at most ten times a second.
+/// `on_pass` runs after each finished pass, outside the clock, and is told the seconds on it so far; `on_progress` at most ten times a second.
 RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
-                    const RenderOptions& options, const std::function<void(const Film&)>& on_pass = {},
+                    const RenderOptions& options, const std::function<void(const Film&, double seconds)>& on_pass = {},
                     const std::function<void(const Progress&)>& on_progress = {});
 
 }  // namespace zonal

@@ -76,7 +76,7 @@ TEST(Render, on_pass_runs_outside_the_clock) {
   CountingIntegrator method;
   Film film(8, 8);
   int calls = 0;
-  const auto wait = [&](const Film&) { ++calls, std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
+  const auto wait = [&](const Film&, double) { ++calls, std::this_thread::sleep_for(std::chrono::milliseconds(200)); };
   const RenderReport report = render(scene, method, film, {.passes = 2}, {.threads = 1}, wait);
   EXPECT_EQ(calls, 2);
   EXPECT_LT(report.begin_pass_seconds + report.radiance_seconds, 0.4);  // the waits alone are 0.4 s

@@ -1,0 +1,15 @@
+# Writes a C++ file that holds other files' bytes: kReportFiles of sweep/report.h.
+#   cmake -DOUTPUT=report_files.cpp "-DINPUTS=a.html;b.js" -P embed.cmake
+set(code "#include \"sweep/report.h\"\n\nnamespace zonal {\n\n")
+set(rows)
+set(i 0)
+foreach(input IN LISTS INPUTS)
+  get_filename_component(name "${input}" NAME)
+  file(READ "${input}" hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+  string(APPEND code "static const unsigned char file${i}[] = {${bytes}0};\n")
+  string(APPEND rows "    {\"${name}\", file${i}, sizeof file${i} - 1},\n")
+  math(EXPR i "${i} + 1")
+endforeach()
+string(APPEND code "\nconst ReportFile kReportFiles[] = {\n${rows}};\nconst size_t kReportFileCount = ${i};\n\n}  // namespace zonal\n")
+file(WRITE "${OUTPUT}" "${code}")
