@@ -18,6 +18,14 @@ namespace {
 using glm::dvec3;
 constexpr double kPiD = 3.14159265358979323846;
 
+/// Cosine of 89.5 degrees, where the outermost samples lie that fits were made to. Both models divide by
+/// cosines: smaller ones would leave isolated spikes of 1e8 / sr in the few cells whose centre happens to
+/// touch the horizon.
+constexpr double kLeastCosine = 0.0087265354983739347;
+double cosine_of(const glm::dvec3& w) {
+  return std::max(w.z, kLeastCosine);
+}
+
 [[noreturn]] void fail(const std::string& file, const std::string& what) {
   throw SceneError(file + ": " + what);
 }
@@ -191,7 +199,8 @@ glm::dvec3 evaluate_abc(const AbcParameters& p, const dvec3& w_out, const dvec3&
   const double fresnel = 0.5 * (s * s + t * t);
 
   // Masking by V-shaped grooves (Cook and Torrance 1982), divided by both cosines. (FIT-1)
-  const double low = std::min(w_out.z, w_in.z), high = std::max(w_out.z, w_in.z);
+  const double out = cosine_of(w_out), in = cosine_of(w_in), low = std::min(out, in),
+               high = std::max(out, in);
   const double grooves = std::min(1 / low, 2 * cos_h / cos_d) / high;
   return p.diffuse / kPiD + p.A * (fresnel * grooves / kPiD * std::pow(1 + p.B * one_minus_cos, -p.C));
 }
@@ -203,7 +212,7 @@ glm::dvec3 evaluate_sgd(const SgdParameters& p, const dvec3& w_out, const dvec3&
   const double tan2 = (sum.x * sum.x + sum.y * sum.y) / std::max(sum.z * sum.z, 1e-9 * length * length);
   const double theta[2] = {std::atan2(std::hypot(w_out.x, w_out.y), w_out.z),
                            std::atan2(std::hypot(w_in.x, w_in.y), w_in.z)};
-  const double schlick = std::pow(1 - cos_d, 5);
+  const double schlick = std::pow(1 - cos_d, 5), cosines = cosine_of(w_out) * cosine_of(w_in);
 
   dvec3 f;
   for (int i = 0; i < 3; ++i) {
@@ -216,8 +225,7 @@ glm::dvec3 evaluate_sgd(const SgdParameters& p, const dvec3& w_out, const dvec3&
       // exp of more than 500 hides everything already; more would overflow.
       masking *= std::clamp(1 + p.lambda[i] * (1 - std::exp(std::min(p.c[i] * beyond, 500.0))), 0.0, 1.0);
     }
-    f[i] =
-        (p.diffuse[i] + p.specular[i] * fresnel * normals * masking / (w_out.z * w_in.z)) / kPiD;  // (FIT-2)
+    f[i] = (p.diffuse[i] + p.specular[i] * fresnel * normals * masking / cosines) / kPiD;  // (FIT-2)
   }
   return f;
 }
