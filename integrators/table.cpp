@@ -6,6 +6,7 @@
 #include "integrators/debug/debug.h"
 #include "integrators/path/path.h"
 #include "integrators/vpl/vpl.h"
+#include "integrators/vsgl/vsgl.h"
 
 namespace zonal {
 namespace {
@@ -31,6 +32,9 @@ const std::array kTable = {
                   false, list_params<PathParams>, make<PathParams, PathIntegrator>},
     IntegratorRow{"vpl", "instant radiosity: virtual point lights", "direct and `bounces` bounces, `occlusion` as set",
                   false, list_params<VplParams>, make<VplParams, VplIntegrator>},
+    IntegratorRow{"vsgl", "virtual spherical Gaussian lights, two for each block of the map",
+                  "direct and `bounces` bounces, `occlusion` as set", false, list_params<VsglParams>,
+                  make<VsglParams, VsglIntegrator>},
     IntegratorRow{"normal", "shading normals as colours", "none", true, list_params<DebugParams>,
                   make_debug<DebugQuantity::normal>},
     IntegratorRow{"albedo", "surface albedo", "none", true, list_params<DebugParams>, make_debug<DebugQuantity::albedo>},
