@@ -18,8 +18,8 @@ namespace zonal {
 namespace {
 
 constexpr double kRadians = 3.14159265358979323846 / 180;
-/// What the nodes of rows with `share` bands resolve where nobody knows how many bands there will be.
-constexpr int kResolve = 48;
+/// Where the two sides differ by more than this norm, the half m >= 0 is made from the mean of both.
+constexpr double kAverage = 1e-5;
 
 const std::array<std::string, 5> kWindows{"none", "hann", "lanczos", "hamming", "auto"};
 
@@ -89,15 +89,15 @@ struct RowPair {
   size_t evaluations;
 };
 
-RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirrored,
+RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirrored, double asymmetry,
                     const ShProjectionOptions& options) {
   const int most = options.bands > 0 ? options.bands : options.most_bands;
-  HemisphereOptions quadrature{.half = mirrored, .resolve_bands = std::clamp(most, 16, kResolve)};
-  if (bsdf.kind == BsdfKind::measured) quadrature.resolve_bands = std::max(quadrature.resolve_bands, 32);
+  const double theta = ShMaterial::degrees(elevation) * kRadians;
+  HemisphereOptions quadrature{.half = mirrored, .average = asymmetry > kAverage};
   quadrature.resolve_bands = std::max(quadrature.resolve_bands, most);
   if (!mirrored) quadrature.most_nodes *= 2;
-  const HemisphereNodes nodes =
-      hemisphere_nodes(bsdf, azimuth, ShMaterial::degrees(elevation) * kRadians, quadrature);
+  if (elevation >= 88) quadrature.most_nodes *= 2;  // the highlight is cut by the horizon
+  const HemisphereNodes nodes = hemisphere_nodes(bsdf, azimuth, theta, quadrature);
 
   RowPair pair;
   pair.albedo = vec3(float(nodes.albedo[0]), float(nodes.albedo[1]), float(nodes.albedo[2]));
@@ -164,8 +164,8 @@ ShProjection project_material(const Bsdf& bsdf, const ShProjectionOptions& optio
   out.azimuths = options.azimuths > 0 ? options.azimuths : isotropic ? 1 : 90;
   // Directions of anisotropic materials have no plane of symmetry in general, so nothing is asked of them.
   out.mirrored = false;
+  std::vector<double> asymmetry(n);
   if (isotropic) {
-    std::vector<double> asymmetry(n);
     tbb::parallel_for(0, n, [&](int e) {
       if (!stop()) asymmetry[size_t(e)] = mirror_asymmetry(bsdf, ShMaterial::degrees(e) * kRadians);
     });
@@ -190,7 +190,8 @@ ShProjection project_material(const Bsdf& bsdf, const ShProjectionOptions& optio
             return;
           }
           const double azimuth = 360.0 * kRadians * (r / n) / out.azimuths;
-          pairs[size_t(r)] = project_row(bsdf, azimuth, r % n, out.mirrored, options);
+          pairs[size_t(r)] =
+              project_row(bsdf, azimuth, r % n, out.mirrored, asymmetry[size_t(r % n)], options);
           if (!progress) continue;
           const std::lock_guard lock(telling);
           progress(double(++done) / rows);
@@ -227,8 +228,10 @@ int BandStudy::bands(const std::vector<double>& shares, double share) {
 
 BandStudy study_bands(const Bsdf& bsdf, double theta_out, int most_bands) {
   assert(most_bands >= 1 && most_bands <= ShMaterial::kMaxBands);
-  const bool mirrored = is_isotropic(bsdf) && mirror_asymmetry(bsdf, theta_out) <= kMirrorTolerance;
-  HemisphereOptions options{.half = mirrored, .resolve_bands = std::max(most_bands, kResolve)};
+  const double asymmetry = is_isotropic(bsdf) ? mirror_asymmetry(bsdf, theta_out) : 1;
+  const bool mirrored = asymmetry <= kMirrorTolerance;
+  HemisphereOptions options{.half = mirrored, .average = asymmetry > kAverage};
+  options.resolve_bands = std::max(options.resolve_bands, most_bands);
   if (!mirrored) options.most_nodes *= 2;
   const HemisphereNodes nodes = hemisphere_nodes(bsdf, 0, theta_out, options);
   const double whole[2] = {nodes.energy, nodes.energy_cosine};

@@ -47,7 +47,7 @@ struct ShProjection {
 };
 
 /// Largest asymmetry at which only the half m >= 0 is kept.
-inline constexpr double kMirrorTolerance = 1e-3;
+inline constexpr double kMirrorTolerance = 5e-3;
 
 /// Whether the kind depends on the difference of azimuths only.
 bool is_isotropic(const Bsdf& bsdf);

@@ -26,25 +26,33 @@ double chord(const Direction& a, const Direction& b) {
   return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
 }
 
-/// From (t, phi) of the half vector to w_in.
+/// The two parts of the hemisphere: up to 89.5 degrees, and the strip below, where RGL data divide by a
+/// constant cosine (docs/materials.md): the kink in between is an edge of cells.
+enum Part { upper, strip };
+constexpr double kStripHeight = 0.00872653549837393;  // cos 89.5 degrees
+
+/// From (t, phi) of the half vector to w_in, t in [0, 1].
 struct Map {
   double sin_out, cos_out;
 
   explicit Map(double theta_out) : sin_out(std::sin(theta_out)), cos_out(std::cos(theta_out)) {}
 
-  /// (ShQ-1) w_in.z = 2 (h.o) h.z - o.z vanishes where tan 2 theta = -cos theta_o / (sin theta_o cos phi).
-  double theta_max(double cos_phi) const { return 0.5 * std::atan2(cos_out, -sin_out * cos_phi); }
-
-  /// Also d omega_in / (dt dphi) = 4 (h.o) sin theta 2 t theta_max.
-  Direction at(double t, double phi, double* jacobian = nullptr) const {
-    const double c = std::cos(phi), s = std::sin(phi), widest = theta_max(c), theta = t * t * widest;
-    const double sin_h = std::sin(theta), cos_h = std::cos(theta);
-    const double h_dot_o = sin_h * c * sin_out + cos_h * cos_out;
-    if (jacobian) *jacobian = 8 * h_dot_o * sin_h * t * widest;
-    // The height as a product: exact where it goes to zero, at the horizon.
+  /// w_in.z = 2 (h.o) h.z - o.z = radius sin(2 (theta_max - theta)) at the half vector's polar angle theta,
+  /// with
+  ///     tan 2 theta_max = -cos theta_o / (sin theta_o cos phi),  radius^2 = cos^2 theta_o + sin^2 theta_o
+  ///     cos^2 phi  (ShQ-1)
+  /// and d omega_in = 4 (h.o) sin theta dtheta dphi.
+  Direction at(Part part, double t, double phi, double* jacobian = nullptr) const {
+    const double c = std::cos(phi), s = std::sin(phi);
+    const double widest = 0.5 * std::atan2(cos_out, -sin_out * c);
     const double radius = std::sqrt(cos_out * cos_out + sin_out * sin_out * c * c);
-    return {2 * h_dot_o * sin_h * c - sin_out, 2 * h_dot_o * sin_h * s,
-            radius * std::sin(2 * (widest - theta))};
+    const double edge = std::max(0.0, widest - 0.5 * std::asin(std::min(1.0, kStripHeight / radius)));
+    // Depth is counted from the horizon in the strip, so that heights are exact where they go to zero.
+    const double depth = part == upper ? widest - t * t * edge : (1 - t * t) * (widest - edge);
+    const double theta = part == upper ? t * t * edge : widest - depth;
+    const double sin_h = std::sin(theta), h_dot_o = sin_h * c * sin_out + std::cos(theta) * cos_out;
+    if (jacobian) *jacobian = 8 * h_dot_o * sin_h * t * (part == upper ? edge : widest - edge);
+    return {2 * h_dot_o * sin_h * c - sin_out, 2 * h_dot_o * sin_h * s, radius * std::sin(2 * depth)};
   }
 };
 
@@ -70,8 +78,11 @@ struct Rule {
 };
 
 constexpr int kIntegrands = 3;  ///< F, F cos, F^2; channels summed
+/// How much the error of each counts: what is shaded with is F', and energies need two digits less.
+constexpr double kWeights[kIntegrands] = {0.2, 1, 0.05};
 
 struct Cell {
+  Part part;
   double t0, t1, phi0, phi1;
   std::array<Direction, kNodes> w;
   std::array<double, kNodes> weight;
@@ -82,8 +93,10 @@ struct Cell {
 
 class Integrator {
  public:
-  Integrator(const Bsdf& bsdf, double azimuth, double theta_out)
+  /// `average`: of every direction and its mirror image in the plane of w_out.
+  Integrator(const Bsdf& bsdf, double azimuth, double theta_out, bool average = false)
       : bsdf_(bsdf),
+        average_(average),
         map_(theta_out),
         cos_(std::cos(azimuth)),
         sin_(std::sin(azimuth)),
@@ -111,6 +124,7 @@ class Integrator {
 
  private:
   const Bsdf& bsdf_;
+  bool average_;
   Map map_;
   double cos_, sin_;
   vec3 w_out_;
@@ -125,11 +139,18 @@ void Integrator::fill(Cell* cell) const {
     const double phi = cell->phi0 + height * rule.node[i];
     for (int j = 0; j < kOrder; ++j) {
       const int k = i * kOrder + j;
-      cell->w[k] = map_.at(cell->t0 + width * rule.node[j], phi, &density[k]);
+      cell->w[k] = map_.at(cell->part, cell->t0 + width * rule.node[j], phi, &density[k]);
       cell->weight[k] = area * density[k] * rule.weight[i] * rule.weight[j];
     }
   }
   evaluate(kNodes, cell->w.data(), cell->f.data());
+  if (average_) {
+    auto mirrored = cell->w;
+    for (Direction& w : mirrored) w.y = -w.y;
+    std::array<vec3, kNodes> other;
+    evaluate(kNodes, mirrored.data(), other.data());
+    for (int k = 0; k < kNodes; ++k) cell->f[k] = 0.5f * (cell->f[k] + other[k]);
+  }
 
   std::array<std::array<double, kNodes>, kIntegrands> g;
   for (int k = 0; k < kNodes; ++k) {
@@ -157,25 +178,25 @@ void Integrator::fill(Cell* cell) const {
 }
 
 /// Splits [t0, t1] x [phi0, phi1] until half of a cell's width is less than `reach` on the sphere of w_in.
-void seed(const Map& map, double t0, double t1, double phi0, double phi1, double reach,
+void seed(const Map& map, Part part, double t0, double t1, double phi0, double phi1, double reach,
           std::vector<Cell>* cells) {
   const double t[3] = {t0, 0.5 * (t0 + t1), t1}, phi[3] = {phi0, 0.5 * (phi0 + phi1), phi1};
   Direction w[3][3];
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) w[i][j] = map.at(t[j], phi[i]);
+    for (int j = 0; j < 3; ++j) w[i][j] = map.at(part, t[j], phi[i]);
   double along_t = 0, along_phi = 0;
   for (int i = 0; i < 3; ++i) {
     along_t = std::max({along_t, chord(w[i][0], w[i][1]), chord(w[i][1], w[i][2])});
     along_phi = std::max({along_phi, chord(w[0][i], w[1][i]), chord(w[1][i], w[2][i])});
   }
   if (std::max(along_t, along_phi) <= reach || std::max(t1 - t0, phi1 - phi0) < 1e-4) {
-    cells->push_back({.t0 = t0, .t1 = t1, .phi0 = phi0, .phi1 = phi1});
+    cells->push_back({.part = part, .t0 = t0, .t1 = t1, .phi0 = phi0, .phi1 = phi1});
   } else if (along_t > along_phi) {
-    seed(map, t0, t[1], phi0, phi1, reach, cells);
-    seed(map, t[1], t1, phi0, phi1, reach, cells);
+    seed(map, part, t0, t[1], phi0, phi1, reach, cells);
+    seed(map, part, t[1], t1, phi0, phi1, reach, cells);
   } else {
-    seed(map, t0, t1, phi0, phi[1], reach, cells);
-    seed(map, t0, t1, phi[1], phi1, reach, cells);
+    seed(map, part, t0, t1, phi0, phi[1], reach, cells);
+    seed(map, part, t0, t1, phi[1], phi1, reach, cells);
   }
 }
 
@@ -188,7 +209,14 @@ std::vector<Cell> seeds(const Map& map, bool half, double reach) {
     double t0 = 0;
     for (int ring = -8; ring <= 0; ++ring) {
       const double t1 = std::exp2(ring);
-      seed(map, t0, t1, phi0, phi1, reach, &cells);
+      seed(map, upper, t0, t1, phi0, phi1, reach, &cells);
+      t0 = t1;
+    }
+    // Near grazing the highlight reaches into the strip.
+    t0 = 0;
+    for (int ring = map.cos_out < 4 * kStripHeight ? -8 : 0; ring <= 0; ring += 2) {
+      const double t1 = std::exp2(ring);
+      seed(map, strip, t0, t1, phi0, phi1, reach, &cells);
       t0 = t1;
     }
   }
@@ -199,7 +227,7 @@ std::vector<Cell> seeds(const Map& map, bool half, double reach) {
 
 HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_out,
                                  const HemisphereOptions& options) {
-  const Integrator integrator(bsdf, azimuth, theta_out);
+  const Integrator integrator(bsdf, azimuth, theta_out, options.half && options.average);
   std::vector<Cell> cells = seeds(integrator.map(), options.half, kPhase / options.resolve_bands);
   HemisphereNodes nodes;
   double total[kIntegrands] = {};
@@ -213,7 +241,7 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
   const auto error = [&](const Cell& cell) {
     double worst = 0;
     for (int q = 0; q < kIntegrands; ++q)
-      if (total[q] > 0) worst = std::max(worst, (cell.tail_t[q] + cell.tail_phi[q]) / total[q]);
+      if (total[q] > 0) worst = std::max(worst, kWeights[q] * (cell.tail_t[q] + cell.tail_phi[q]) / total[q]);
     return worst;
   };
   using Entry = std::pair<double, size_t>;
@@ -226,8 +254,11 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
     const Cell& worst = cells[index];
     double along_t = 0, along_phi = 0;
     for (int q = 0; q < kIntegrands; ++q)
-      if (total[q] > 0) along_t += worst.tail_t[q] / total[q], along_phi += worst.tail_phi[q] / total[q];
-    Cell first{.t0 = worst.t0, .t1 = worst.t1, .phi0 = worst.phi0, .phi1 = worst.phi1}, second = first;
+      if (total[q] > 0)
+        along_t += kWeights[q] * worst.tail_t[q] / total[q],
+            along_phi += kWeights[q] * worst.tail_phi[q] / total[q];
+    Cell first{.part = worst.part, .t0 = worst.t0, .t1 = worst.t1, .phi0 = worst.phi0, .phi1 = worst.phi1},
+        second = first;
     if (along_t > along_phi)
       first.t1 = second.t0 = 0.5 * (worst.t0 + worst.t1);
     else

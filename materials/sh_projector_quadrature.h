@@ -20,9 +20,10 @@ namespace zonal {
 struct HemisphereOptions {
   bool half =
       false;  ///< azimuths 0..pi alone, weights doubled: for materials symmetric about the plane of w_out
-  int resolve_bands = 48;   ///< the nodes resolve at least this many bands everywhere
-  double tolerance = 1e-5;  ///< of one cell, as a share of the whole integrals
-  int most_nodes = 50000;   ///< evaluations end here; in the half
+  bool average = false;     ///< with half: F is the mean of both sides, where they differ a little
+  int resolve_bands = 32;   ///< the nodes resolve at least this many bands everywhere
+  double tolerance = 5e-7;  ///< of one cell, as a share of the integral of F'
+  int most_nodes = 100000;  ///< the search for better cells ends here
 };
 
 /// Directions are in the view frame of sh_material.h.
@@ -33,7 +34,7 @@ struct HemisphereNodes {
   double energy = 0;            ///< integral of F^2, channels summed
   double energy_cosine = 0;     ///< of F'^2
   double albedo[3] = {};        ///< integral of F'
-  size_t evaluations = 0;
+  size_t evaluations = 0;       ///< nodes of halved cells included
 
   int size() const { return int(x.size()); }
 };
