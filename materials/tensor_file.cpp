@@ -28,11 +28,11 @@ constexpr const char* kTypeNames[kTypes] = {"invalid", "u8",  "i8",  "u16", "i16
                                             "i32",     "u64", "i64", "f16", "f32", "f64"};
 constexpr uint64_t kTypeSizes[kTypes] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
 
-std::string text_of(const std::vector<uint64_t>& shape) {
+std::string text_of(const std::vector<uint64_t>& shape, bool expected = false) {
   std::string text = "[";
   for (const uint64_t length : shape) {
     if (text.size() > 1) text += ", ";
-    text += length == kAnyLength ? "any" : std::to_string(length);
+    text += expected && length == kAnyLength ? "any" : std::to_string(length);
   }
   return text + "]";
 }
@@ -177,7 +177,7 @@ const TensorField& TensorFile::require(std::string_view name, TensorType type,
   if (!field) {
     std::vector<std::string> names;
     for (const TensorField& f : fields_) names.push_back(f.name);
-    fail(name, fmt::format("found none, expected {} of shape {}{}", name_of(type), text_of(shape),
+    fail(name, fmt::format("found none, expected {} of shape {}{}", name_of(type), text_of(shape, true),
                            names.empty() ? "" : did_you_mean(name, names)));
   }
   if (field->type != type)
@@ -185,7 +185,8 @@ const TensorField& TensorFile::require(std::string_view name, TensorType type,
   bool fits = field->shape.size() == shape.size();
   for (size_t d = 0; fits && d < shape.size(); ++d)
     fits = shape[d] == kAnyLength || shape[d] == field->shape[d];
-  if (!fits) fail(name, fmt::format("found shape {}, expected {}", text_of(field->shape), text_of(shape)));
+  if (!fits)
+    fail(name, fmt::format("found shape {}, expected {}", text_of(field->shape), text_of(shape, true)));
   return *field;
 }
 
@@ -213,11 +214,24 @@ void TensorWriter::add(const std::string& name, const std::vector<uint64_t>& sha
                        const std::vector<float>& values) {
   std::string data(values.size() * sizeof(float), '\0');
   std::memcpy(data.data(), values.data(), data.size());
-  entries_.push_back({name, TensorType::f32, shape, std::move(data)});
+  put({name, TensorType::f32, shape, std::move(data)});
 }
 
 void TensorWriter::add(const std::string& name, std::string_view bytes) {
-  entries_.push_back({name, TensorType::u8, {bytes.size()}, std::string(bytes)});
+  put({name, TensorType::u8, {bytes.size()}, std::string(bytes)});
+}
+
+void TensorWriter::remove(std::string_view name) {
+  std::erase_if(entries_, [&](const Entry& e) { return e.name == name; });
+}
+
+void TensorWriter::put(Entry entry) {
+  for (Entry& e : entries_)
+    if (e.name == entry.name) {
+      e = std::move(entry);
+      return;
+    }
+  entries_.push_back(std::move(entry));
 }
 
 std::string TensorWriter::bytes() const {

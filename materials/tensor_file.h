@@ -68,11 +68,12 @@ class TensorFile {
 /// Makes such files: what tests and examples are built from.
 class TensorWriter {
  public:
-  /// `values` must be as many as the shape says.
+  /// `values` must be as many as the shape says. A field of that name is replaced.
   void add(const std::string& name, const std::vector<uint64_t>& shape, const std::vector<float>& values);
   void add(const std::string& name, std::string_view bytes);  ///< u8, one dimension
-  std::string bytes() const;                                  ///< the whole file
-  void write(const std::string& file) const;                  ///< atomically; SceneError when it cannot
+  void remove(std::string_view name);
+  std::string bytes() const;                  ///< the whole file
+  void write(const std::string& file) const;  ///< atomically; SceneError when it cannot
 
  private:
   struct Entry {
@@ -82,6 +83,8 @@ class TensorWriter {
     std::string data;
   };
   std::vector<Entry> entries_;
+
+  void put(Entry entry);
 };
 
 }  // namespace zonal
