@@ -19,7 +19,7 @@ namespace {
 
 struct Options {
   std::string file, output, runner = "local", only;
-  bool dry_run = false, quiet = false, score_only = false;
+  bool dry_run = false, quiet = false, score_only = false, retry = false;
 };
 
 /// The cells and, as far as budgets tell, how long they take.
@@ -65,9 +65,12 @@ int sweep_command(const Options& options) {
   catch_interrupts();
   RunSummary summary;
   if (!options.score_only)
-    summary = run_cells(
-        plan, store,
-        {.program = own_program(), .only = options.only, .quiet = options.quiet, .stop = &stop_asked()});
+    summary = run_cells(plan, store,
+                        {.program = own_program(),
+                         .only = options.only,
+                         .retry = options.retry,
+                         .quiet = options.quiet,
+                         .stop = &stop_asked()});
   const auto start = Clock::now();
   score_cells(plan, store);
   write_report(sweep_results(plan, store), store);
@@ -102,6 +105,7 @@ void add_sweep(CLI::App& app, int* exit_code) {
   command->add_flag("--dry-run", options->dry_run,
                     "print the cells and an estimate of their time; run nothing");
   command->add_flag("--score-only", options->score_only, "run nothing: score and report what is there");
+  command->add_flag("--retry", options->retry, "run failed cells again");
   command->add_flag("--quiet", options->quiet, "print errors and warnings only");
   command->callback([=] { *exit_code = sweep_command(*options); });
 }

@@ -40,6 +40,11 @@ json cell_json(const SweepPlan& plan, const CellStore& store, const Cell& cell) 
               {"search", nullptr}};
   out["id"] = cell_key(plan, cell, method.parameters, budget);
   out["reference"] = reference_key(cell_references(plan, cell)[0]);
+  for (const ReferenceRequest& request : cell_references(plan, cell))
+    if (const auto failure = reference_failure(store, reference_key(request))) {
+      out["status"] = "failed", out["reason"] = *failure;
+      return out;
+    }
   const auto work = cell_work(plan, store, cell);
   if (!work) {
     const auto search = store.search(search_key(plan, cell));

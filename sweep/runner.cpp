@@ -41,6 +41,8 @@ const char* pixels_name(RenderOptions::Pixels pixels) {
   }
 }
 
+std::string failure_file(const CellStore& store, const std::string& key);
+
 /// One process's worth of rendering.
 struct Render {
   json settings;
@@ -59,7 +61,7 @@ class Runner {
     choose();
     make_references();
     for (const Cell* cell : cells_)
-      if (!stopped()) search(*cell);
+      if (!stopped() && has_references(*cell)) search(*cell);
     // Shuffled, so that a machine that slows down slows all methods alike; the same order each time the sweep
     // is resumed.
     std::mt19937 random(12345);
@@ -138,9 +140,11 @@ class Runner {
       const auto more = scene_arguments(plan_.scenes[scene]);
       command.insert(command.end(), more.begin(), more.end());
       const ProcessResult result = run(command);
+      std::error_code error;
+      fs::remove(failure_file(store_, key), error);
+      // Its cells become rows that say so; the next call tries again.
       if (!result.ok() && !result.interrupted)
-        throw SceneError(
-            fmt::format("the reference of {} failed: {}", plan_.scenes[scene].id, result.reason()));
+        write_record(failure_file(store_, key), {{"reason", "the reference failed: " + result.reason()}});
     }
   }
 
@@ -250,15 +254,28 @@ class Runner {
 
   // ---- cells -------------------------------------------------------------------------------------------
 
+  bool has_references(const Cell& cell) const {
+    for (const ReferenceRequest& request : cell_references(plan_, cell))
+      if (reference_failure(store_, reference_key(request))) return false;
+    return true;
+  }
+
   void run_cell(const Cell& cell) {
+    if (!has_references(cell)) {
+      ++summary_.failed;
+      return;
+    }
     const std::optional<CellWork> work = cell_work(plan_, store_, cell);
     if (!work) {
       ++summary_.failed;
       return;
     }
-    if (store_.cell(work->key)) {
-      ++summary_.kept;
-      return;
+    if (const auto record = store_.cell(work->key)) {
+      const bool failed = (*record)["status"] == "failed";
+      if (!failed || !options_.retry) {
+        ++(failed ? summary_.failed : summary_.kept);
+        return;
+      }
     }
     say(cell_name(plan_, cell));
     const std::string folder = store_.cell_folder(work->key);
@@ -333,7 +350,17 @@ class Runner {
   RunSummary summary_;
 };
 
+std::string failure_file(const CellStore& store, const std::string& key) {
+  return store.folder() + "/references/" + key + ".failed.json";
+}
+
 }  // namespace
+
+std::optional<std::string> reference_failure(const CellStore& store, const std::string& key) {
+  const auto record = read_record(failure_file(store, key));
+  if (!record) return {};
+  return record->value("reason", "the reference failed");
+}
 
 std::string cell_name(const SweepPlan& plan, const Cell& cell) {
   return fmt::format("{} | {} | {} | {}seed {}", plan.scenes[cell.scene].id, plan.methods[cell.method].id,

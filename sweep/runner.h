@@ -18,6 +18,7 @@ namespace zonal {
 struct RunnerOptions {
   std::string program;  ///< the zonal command
   std::string only;     ///< run cells whose name contains this; empty: all
+  bool retry = false;   ///< run failed cells again
   bool quiet = false;
   const std::atomic<bool>* stop = nullptr;
 };
@@ -48,6 +49,9 @@ std::string search_key(const SweepPlan& plan, const Cell& cell);
 /// The references a cell is scored against: what its method solves, and, where the plan asks for it,
 /// everything.
 std::vector<ReferenceRequest> cell_references(const SweepPlan& plan, const Cell& cell);
+
+/// Why a reference could not be made; empty when it could, or was not tried.
+std::optional<std::string> reference_failure(const CellStore& store, const std::string& key);
 
 RunSummary run_cells(const SweepPlan& plan, const CellStore& store, const RunnerOptions& options);
 

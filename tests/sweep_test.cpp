@@ -1,0 +1,325 @@
+// `zonal sweep`: its files, searches, statistics, processes and what it leaves behind.
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "core/error.h"
+#include "sweep/cell_store.h"
+#include "sweep/process.h"
+#include "sweep/report.h"
+#include "sweep/search.h"
+#include "sweep/statistics.h"
+#include "sweep/sweep_file.h"
+
+namespace zonal {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string kScene = std::string(ZONAL_SOURCE_DIR) + "/scenes/cornell/cornell.json";
+
+/// A folder that goes away with the test.
+struct Folder {
+  std::string path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "zonal-sweep-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path + "/" + name) << text;
+    return path + "/" + name;
+  }
+};
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+json small_sweep() {
+  return {{"name", "small"},
+          {"scenes", {kScene}},
+          {"size", "24x16"},
+          {"seeds", 2},
+          {"runs", 1},
+          {"budget", {{"passes", 2}}},
+          {"reference", {{"passes", 4}}},
+          {"methods", {"path", {{"integrator", "vpl"}, {"set", {{"lights", {4, 16}}}}}}}};
+}
+
+/// What reading this sweep complains of.
+std::string complaint(const json& sweep) {
+  const Folder folder;
+  try {
+    read_sweep(folder.write("s.json", sweep.dump()));
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+int sweep(const std::string& file, const std::string& out) {
+  const ProcessResult result = run_process({ZONAL_PROGRAM, "sweep", file, "-o", out, "--quiet"}, nullptr);
+  return result.signal ? -result.signal : result.exit_code;
+}
+
+// ---- statistics -----------------------------------------------------------------------------------------
+
+TEST(SweepStatistics, quantiles_are_those_of_the_tables) {
+  // Two-sided 95 % points of Student's t (any statistics handbook), to their four digits.
+  const std::pair<int, double> table[] = {{1, 12.706}, {2, 4.3027},  {4, 2.7764},   {5, 2.5706},
+                                          {9, 2.2622}, {29, 2.0452}, {1000, 1.9623}};
+  for (const auto& [degrees, quantile] : table)
+    EXPECT_NEAR(student_95(degrees), quantile, 2e-4 * quantile) << degrees;
+}
+
+TEST(SweepStatistics, an_interval_holds_the_true_mean_in_95_percent_of_cases) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(3, 2);
+  int held = 0;
+  constexpr int kTrials = 4000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> values(5);
+    for (double& v : values) v = normal(random);
+    const Interval interval = student_interval(values);
+    held += interval.low <= 3 && 3 <= interval.high;
+  }
+  // Binomial: 4 standard deviations are 4 sqrt(0.95 0.05 / 4000) = 0.0138.
+  EXPECT_NEAR(double(held) / kTrials, 0.95, 0.0138);
+}
+
+TEST(SweepStatistics, median_of_odd_and_even_numbers) {
+  EXPECT_EQ(median({5, 1, 3}), 3);
+  EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
+}
+
+// ---- searches -------------------------------------------------------------------------------------------
+
+TEST(SweepSearch, finds_the_count_of_an_affine_cost_in_six_runs) {
+  for (const double fixed : {0.0, 0.02, 0.3}) {
+    for (const double each : {1e-5, 1e-3}) {
+      for (const double target : {0.5, 2.0}) {
+        const auto time = [&](int n) { return fixed + each * n; };
+        const SearchResult found = search_count(time, target, {.first = 400});
+        EXPECT_TRUE(found.reached) << fixed << " " << each << " " << target << ": " << found.value;
+        EXPECT_LE(found.runs.size(), 6u);
+        EXPECT_NEAR(time(found.count), target, 0.05 * target);
+      }
+    }
+  }
+}
+
+TEST(SweepSearch, finds_a_falling_error) {
+  const auto error = [](int n) { return 0.01 + 1 / std::sqrt(n); };
+  const SearchResult found = search_count(error, 0.05, {.first = 4, .slope = -0.5, .most_runs = 8});
+  EXPECT_TRUE(found.reached);
+  EXPECT_NEAR(error(found.count), 0.05, 0.0025);
+}
+
+TEST(SweepSearch, says_when_a_target_lies_between_two_counts_or_below_all) {
+  const SearchResult between = search_count([](int n) { return n; }, 1.4, {.first = 8});
+  EXPECT_FALSE(between.reached);
+  EXPECT_EQ(between.count, 1);  // |ln(1/1.4)| < |ln(2/1.4)|
+  const SearchResult below = search_count([](int n) { return 3.0 + n; }, 1, {.first = 100});
+  EXPECT_FALSE(below.reached);
+  EXPECT_EQ(below.count, 1);
+  EXPECT_EQ(search_count([](int) { return std::nan(""); }, 1, {}).count, 0);
+}
+
+// ---- sweep files ----------------------------------------------------------------------------------------
+
+TEST(SweepFile, the_cells_are_the_product_of_all_lists) {
+  json sweep = small_sweep();
+  sweep["budget"] = {{{"passes", 1}}, {{"seconds", 0.1}}};
+  const Folder folder;
+  const SweepPlan plan = read_sweep(folder.write("s.json", sweep.dump()));
+  EXPECT_EQ(plan.methods.size(), 3u);  // path and two counts of lights
+  EXPECT_EQ(plan.cells.size(), 3u * 2 * 2);
+  EXPECT_EQ(plan.groups, 6);
+  EXPECT_EQ(plan.methods[1].id, "vpl lights=4");
+  EXPECT_EQ(plan.methods[1].parameters["lights"], 4);
+  EXPECT_EQ(plan.methods[1].reference, json({{"max_bounces", 1}}));
+  EXPECT_EQ(plan.methods[0].reference, json::object());
+}
+
+TEST(SweepFile, every_mistake_is_one_line_with_its_place_and_the_nearest_name) {
+  const std::pair<json::json_pointer, json> kWrong[] = {
+      {json::json_pointer("/scenes/0"), "nowhere.json"},
+      {json::json_pointer("/scenes"), json::array()},
+      {json::json_pointer("/methods/0"), "paht"},
+      {json::json_pointer("/methods"), json::array()},
+      {json::json_pointer("/methods/1/set/lihgts"), 3},
+      {json::json_pointer("/methods/1/set/lights"), 0},
+      {json::json_pointer("/metrics"), {"rsme"}},
+      {json::json_pointer("/budget"), {{"passes", 2}, {"seconds", 1}}},
+      {json::json_pointer("/budget"), {{"equal_time", 1}, {"search", "nothing"}}},
+      {json::json_pointer("/budget"), {{"equal_error", 0.1}, {"metric", "rsme"}}},
+      {json::json_pointer("/seeds"), 0},
+      {json::json_pointer("/size"), "24"},
+      {json::json_pointer("/backends"), {"gpu"}},
+      {json::json_pointer("/bugdet"), 1},
+  };
+  const std::string kExpected[] = {"no such scene", "at least one scene",
+                                   "\"path\"",      "at least one method",
+                                   "\"lights\"",    "lights",
+                                   "\"rmse\"",      "exactly one",
+                                   "\"passes\" or", "\"rmse\"",
+                                   "seeds",         "320x180",
+                                   "cpu",           "\"budget\""};
+  size_t i = 0;
+  for (const auto& [where, value] : kWrong) {
+    json sweep = small_sweep();
+    sweep[where] = value;
+    const std::string said = complaint(sweep);
+    EXPECT_NE(said.find(kExpected[i]), std::string::npos) << where << ": " << said;
+    EXPECT_NE(said.find("s.json"), std::string::npos) << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    ++i;
+  }
+}
+
+TEST(SweepFile, a_key_changes_with_everything_that_determines_the_pixels) {
+  const Folder folder;
+  const SweepPlan plan = read_sweep(folder.write("s.json", small_sweep().dump()));
+  std::set<std::string> keys;
+  for (const Cell& cell : plan.cells)
+    keys.insert(cell_key(plan, cell, plan.methods[cell.method].parameters, plan.budgets[cell.budget]));
+  EXPECT_EQ(keys.size(), plan.cells.size());
+  SweepPlan other = plan;
+  other.scenes[0].width = 25;
+  EXPECT_NE(cell_key(other, other.cells[0], other.methods[0].parameters, other.budgets[0]),
+            cell_key(plan, plan.cells[0], plan.methods[0].parameters, plan.budgets[0]));
+}
+
+// ---- processes ------------------------------------------------------------------------------------------
+
+TEST(SweepProcess, tells_how_a_process_ended) {
+  EXPECT_TRUE(run_process({"/bin/true"}, nullptr).ok());
+  const ProcessResult failed =
+      run_process({"/bin/sh", "-c", "echo one >&2; echo 'the reason' >&2; exit 3"}, nullptr);
+  EXPECT_EQ(failed.exit_code, 3);
+  EXPECT_EQ(failed.reason(), "exit code 3: the reason");
+  const ProcessResult killed = run_process({"/bin/sh", "-c", "kill -9 $$"}, nullptr);
+  EXPECT_EQ(killed.signal, SIGKILL);
+  const ProcessResult missing = run_process({"/nowhere/zonal"}, nullptr);
+  EXPECT_EQ(missing.exit_code, 127);
+  std::atomic<bool> stop = true;
+  EXPECT_TRUE(run_process({"/bin/sleep", "60"}, &stop).interrupted);
+}
+
+// ---- whole sweeps ---------------------------------------------------------------------------------------
+
+TEST(Sweep, runs_reports_and_does_nothing_twice) {
+  const Folder folder;
+  const std::string file = folder.write("s.json", small_sweep().dump()), out = folder.path + "/out";
+  ASSERT_EQ(sweep(file, out), 0);
+  for (const char* name : {"index.html", "data.js", "results.json", "results.csv", "table.md", "table.tex"})
+    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
+  const json results = json::parse(text_of(out + "/results.json"));
+  ASSERT_EQ(results["cells"].size(), 6u);
+  for (const json& cell : results["cells"]) {
+    EXPECT_EQ(cell["status"], "done") << cell["reason"];
+    EXPECT_GT(cell["scores"]["rmse"].get<double>(), 0);
+    EXPECT_TRUE(fs::exists(out + "/" + cell["image"].get<std::string>()));
+  }
+  const auto before =
+      fs::last_write_time(out + "/cells/" + results["cells"][0]["id"].get<std::string>() + "/cell.json");
+  ASSERT_EQ(sweep(file, out), 0);
+  EXPECT_EQ(
+      fs::last_write_time(out + "/cells/" + results["cells"][0]["id"].get<std::string>() + "/cell.json"),
+      before);
+}
+
+TEST(Sweep, another_sweeps_folder_and_a_folder_of_other_things_are_refused) {
+  const Folder folder;
+  json one = small_sweep(), other = small_sweep();
+  one["methods"] = other["methods"] = {"path"};
+  other["name"] = "other";
+  const std::string out = folder.path + "/out";
+  ASSERT_EQ(sweep(folder.write("a.json", one.dump()), out), 0);
+  EXPECT_EQ(sweep(folder.write("b.json", other.dump()), out), 2);
+  EXPECT_EQ(sweep(folder.path + "/a.json", folder.path), 2);  // holds a.json, no sweep
+}
+
+TEST(Sweep, a_cell_that_fails_is_a_row_with_its_reason) {
+  const Folder folder;
+  json sweep_json = small_sweep();
+  // The scene exists, and is none.
+  sweep_json["scenes"] = {kScene, folder.write("broken.json", "{\"camera\": {}}")};
+  sweep_json["methods"] = {"path"};
+  const std::string out = folder.path + "/out";
+  const int code = sweep(folder.write("s.json", sweep_json.dump()), out);
+  EXPECT_EQ(code, 1);
+  const json results = json::parse(text_of(out + "/results.json"));
+  int failed = 0;
+  for (const json& cell : results["cells"]) {
+    if (cell["status"] != "failed") continue;
+    ++failed;
+    EXPECT_NE(cell["reason"].get<std::string>().find("broken.json"), std::string::npos) << cell["reason"];
+  }
+  EXPECT_EQ(failed, 2);
+}
+
+TEST(Sweep, killed_at_random_moments_it_resumes_to_the_same_table) {
+  const Folder folder;
+  const std::string file = folder.write("s.json", small_sweep().dump());
+  ASSERT_EQ(sweep(file, folder.path + "/whole"), 0);
+  std::mt19937 random(3);
+  const std::string out = folder.path + "/killed";
+  for (int kill_count = 0; kill_count < 6; ++kill_count) {
+    const pid_t child = fork();
+    if (child == 0) {
+      execl(ZONAL_PROGRAM, "zonal", "sweep", file.c_str(), "-o", out.c_str(), "--quiet", nullptr);
+      _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 700));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  ASSERT_EQ(sweep(file, out), 0);
+  const json a = json::parse(text_of(folder.path + "/whole/results.json")),
+             b = json::parse(text_of(out + "/results.json"));
+  for (size_t i = 0; i < a["cells"].size(); ++i) {
+    EXPECT_EQ(a["cells"][i]["id"], b["cells"][i]["id"]);
+    EXPECT_EQ(a["cells"][i]["scores"], b["cells"][i]["scores"]);
+  }
+}
+
+// ---- pictures -------------------------------------------------------------------------------------------
+
+TEST(SweepReport, shared_exponents_hold_colours_to_half_a_step) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> exponent(-12, 15), share(0, 1);
+  for (int i = 0; i < 10000; ++i) {
+    const float brightest = std::exp2(exponent(random));
+    const vec3 color(brightest, brightest * share(random), brightest * share(random));
+    const uint32_t word = pack_rgb9e5(color);
+    const double scale = std::exp2(int(word >> 27) - 24);
+    for (int c = 0; c < 3; ++c) {
+      const double decoded = scale * (word >> 9 * c & 511);
+      // The brightest mantissa is at least 255, so half a step is 1/510 of the brightest channel.
+      EXPECT_NEAR(decoded, color[c], brightest / 510.0) << color.x << " " << color.y << " " << color.z;
+    }
+  }
+  EXPECT_EQ(pack_rgb9e5({0, 0, 0}), 0u);
+  EXPECT_EQ(pack_rgb9e5({-1, NAN, 0}), 0u);
+  EXPECT_EQ(pack_rgb9e5({INFINITY, 0, 0}) & 511, 511u);
+}
+
+}  // namespace
+}  // namespace zonal
