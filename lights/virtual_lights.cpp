@@ -268,10 +268,12 @@ VirtualLightSet make_virtual_lights(const Scene& scene, const VirtualLightOption
     set.columns = strongest->cells.columns(), set.rows = strongest->cells.rows();
 
   for (const Plan::Grid& grid : plan.grids) {
-    const auto cells = static_cast<size_t>(grid.cells.columns()) * grid.cells.rows();
-    for (int face = 0; face < grid.cells.faces(); ++face)
-      set.grids.push_back({grid.light, grid.cells.columns(), grid.cells.rows(), grid.cells.fov(),
-                           std::vector<uint32_t>(cells, kNone)});
+    VirtualLightGrid map;
+    map.primary = grid.light, map.columns = grid.cells.columns(), map.rows = grid.cells.rows();
+    map.fov = grid.cells.fov();
+    map.spot = dynamic_cast<const SpotLight*>(scene.lights()[grid.light].get()) != nullptr;
+    map.at.assign(static_cast<size_t>(map.columns) * map.rows, kNone);
+    for (int face = 0; face < grid.cells.faces(); ++face) set.grids.push_back(map);
   }
 
   // Each task fills its own part; joined in order they are the same on any number of threads.

@@ -48,8 +48,10 @@ struct VirtualLight {
 struct VirtualLightGrid {
   uint32_t primary = 0;  ///< index into Scene::lights()
   int columns = 0, rows = 0;
-  float fov =
-      0;  ///< radians, the map's full width: a spot's whole outer cone, pi/2 for a cube's face, 0 directional
+  /// Radians, the map's full width: a spot's whole outer cone, pi/2 for a cube's face, 0 for a directional
+  /// light.
+  float fov = 0;
+  bool spot = false;         ///< the primary is a spot light
   std::vector<uint32_t> at;  ///< of each cell the index of its light, kNone where it holds none
 };
 
