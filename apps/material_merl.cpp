@@ -111,12 +111,12 @@ void write_material(const MerlOptions& options) {
   const double seconds = seconds_since(start);
   const auto brdf = load_merl(file);
   const auto& merl = static_cast<const MerlBrdf&>(*brdf);
-  fmt::print(
-      "{}: {} {}, {:.1f} MB in {:.1f} s, albedo ({:.3f}, {:.3f}, {:.3f}), at most {:.3f} of the light from "
-      "{:.0f} "
-      "degrees\n",
-      file, fit.model, fit.name, double(std::filesystem::file_size(file)) * 1e-6, seconds, merl.albedo.x,
-      merl.albedo.y, merl.albedo.z, max_component(merl.largest_albedo), merl.largest_albedo_degrees);
+  const vec3 albedo = merl.albedo;
+  fmt::print("{}: {} {}, {:.1f} MB in {:.1f} s\n", file, fit.model, fit.name,
+             double(std::filesystem::file_size(file)) * 1e-6, seconds);
+  fmt::print("  albedo ({:.3f}, {:.3f}, {:.3f}), at most {:.3f} of the light from {:.0f} degrees\n", albedo.x,
+             albedo.y, albedo.z, max_component(merl.largest_albedo), merl.largest_albedo_degrees);
+  for (const std::string& note : merl.notes) fmt::print("  {}\n", note);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "materials/bsdf.h"
 
@@ -44,6 +45,7 @@ class MeasuredBrdf {
   std::string description;   ///< what the file says of itself, may be empty
   vec3 albedo{0};            ///< hemispherical, [0, 1], approximate: mean over cosine-weighted w_out
   size_t negative_samples = 0;  ///< of the file, noise and out-of-gamut colours; `evaluate` answers 0 there
+  std::vector<std::string> notes;  ///< what a user should know of this file, a sentence each; mostly none
 
  protected:
   /// A format that gains from sharing w_out overrides this.

@@ -82,6 +82,16 @@ MerlBrdf::MerlBrdf(std::vector<float> cells) : cells_(std::move(cells)) {
       largest_albedo = sum, largest_albedo_degrees = theta * 180.0f / kPi;
     }
   }
+  if (negative_samples > 0) {
+    notes.push_back(
+        fmt::format("{} of {} samples are negative and read as 0", negative_samples, 3 * kMerlCells));
+  }
+  // What the estimate errs by is not worth a note.
+  if (max_component(largest_albedo) > 1.01f) {
+    notes.push_back(
+        fmt::format("reflects {:.2f} of the light from {:.0f} degrees: more than arrives, and kept as it is",
+                    max_component(largest_albedo), largest_albedo_degrees));
+  }
 }
 
 void MerlBrdf::repair() {

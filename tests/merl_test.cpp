@@ -227,6 +227,8 @@ TEST(Merl, negative_samples_count_and_read_as_zero) {
   for (int d = 10; d < 13; ++d) cells[3 * merl_index(20, d, 30) + 1] = -0.5f;
   const MerlBrdf table(std::move(cells));
   EXPECT_EQ(table.negative_samples, 3u);
+  ASSERT_EQ(table.notes.size(), 1u);
+  EXPECT_EQ(table.notes[0], "3 of 4374000 samples are negative and read as 0");
   EXPECT_EQ(table.cell(20, 11, 30), vec3(0.2f, 0, 0.2f));
   const MerlDirections w = merl_directions(20.5, 11.5, 30.5);
   EXPECT_NEAR(table.evaluate(vec3(w.out), vec3(w.in)).y, 0, 1e-3);
@@ -236,6 +238,8 @@ TEST(Merl, light_beyond_what_arrives_is_reported_and_kept) {
   const MerlBrdf table = table_of(constant(glm::dvec3(1.5, 0.5, 0.2) / 3.14159265358979));
   EXPECT_NEAR(table.largest_albedo.x, 1.5f, 1e-3f);
   EXPECT_EQ(table.albedo.x, 1.0f);
+  ASSERT_EQ(table.notes.size(), 1u);
+  EXPECT_EQ(table.notes[0].rfind("reflects 1.50 of the light", 0), 0u) << table.notes[0];
   EXPECT_NEAR(table.albedo.y, 0.5f, 1e-3f);
   EXPECT_NEAR(table.evaluate(vec3(0, 0, 1), direction(40, 0)).x, 1.5f * kInvPi, 1e-6f);
 }
