@@ -1,0 +1,70 @@
+#pragma once
+/// `hvl`: harmonic virtual lights (Mézières 2022, Sec. 5.2). A virtual light is a sphere; what it sends a
+/// point fills the cap the sphere subtends, and meets the point's BRDF on spherical harmonics. Equations,
+/// parameters and failures: README.md beside this file.
+
+#include "integrators/hvl/hvl_kernels.h"
+#include "integrators/many_lights.h"
+#include "lights/virtual_light_radius.h"
+#include "materials/sh_materials.h"
+
+namespace zonal {
+
+struct HvlParams : ManyLightsParams {
+  enum class Emission { sh, brdf };
+  enum class Product { sh, zonal };
+  enum class Window { none, hann, lanczos, hamming, automatic };
+
+  int bands = 9, emission_bands = 3;  ///< or kAuto
+  Emission emission = Emission::sh;
+  Product product = Product::sh;
+  RadiusParams radius;
+  float soft_edge = 0;
+  Window window = Window::none;
+  float window_size = 0;  ///< bands; 0: as many as the receiver has
+
+  void visit(ParamVisitor& v);
+};
+
+class HvlIntegrator : public ManyLights {
+ public:
+  /// Throws SceneError where two settings do not go together; `where` names the settings.
+  explicit HvlIntegrator(const HvlParams& params, const std::string& where = "integrator \"hvl\"");
+
+  /// Position, radius and power of every light of the pass.
+  const std::vector<hvl::Light>& records() const { return records_; }
+  /// What light `j` reflects of a unit flux towards w (unit, world), 1/sr: (HVL-2), or the BRDF.
+  vec3 emission(int j, vec3 w) const;
+
+ protected:
+  void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
+  std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
+  void gather(const TilePoints&, int first, int count, Contributions&) const override;
+
+ private:
+  /// A light's emission on spherical harmonics: view frame in world, coefficients for hvl::emission.
+  struct Emitter {
+    vec3 x, y, z;
+    const float* coefficients;
+  };
+  void project_materials(const Scene&, const Stop&, PassStats&);
+  void refuse_lobeless(const Scene&) const;
+  void prepare_emission(const VirtualLightSet&, const Stop&);
+  template <class F>
+  void with_emission(int first, F&& f) const;
+  void receive_sh(const TilePoints&, hvl::Receivers&) const;
+  void receive_zonal(const TilePoints&, hvl::Receivers&) const;
+  /// Weights of `count` bands.
+  void window(int count, float* weights) const;
+
+  HvlParams params_;
+  std::string where_;
+  ShMaterials materials_;
+  std::vector<hvl::Light> records_;
+  std::vector<Emitter> emitters_;
+  std::vector<float> emission_;
+  int emission_bands_ = 1;
+  bool emission_mirrored_ = true;
+};
+
+}  // namespace zonal
