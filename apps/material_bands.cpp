@@ -1,1 +1,1 @@
-// zonal material: filled by the change that follows.
+// Under way: `zonal material` on top of projector and database.

@@ -1,1 +1,1 @@
-// Filled by the change that follows.
+// Under way: the material database on top of the projector.
