@@ -91,7 +91,7 @@ RglBrdf::RglBrdf(const TensorFile& tensors) {
   isotropic_ = phi_.size() <= 2;
   if (!isotropic_) {
     const float range = phi_.back() - phi_.front();
-    reduction_ = static_cast<int>(std::lround(2.0f * kPi / range));
+    reduction_ = static_cast<int>(std::lround(std::min(2.0f * kPi / range, 100.0f)));
     if (reduction_ != 1 && reduction_ != 2 && reduction_ != 4)
       tensors.fail("phi_i", fmt::format("found azimuths over {:.1f} degrees, expected about 360, 180 or 90",
                                         range * 180 / kPi));
