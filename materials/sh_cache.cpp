@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,8 +18,20 @@
 namespace zonal {
 namespace {
 
-/// Raise it when the projector or a BRDF changes: older files are then of another content.
+/// Raise it when the projector changes: older files are then of another content.
 constexpr int kProjectionVersion = 1;
+
+/// What it reflects between some directions: tells tables of an older version's models and readers apart.
+std::string samples(const Bsdf& bsdf) {
+  Hash hash;
+  for (int i = 0; i < 6; ++i) {
+    const float z = 0.15f + 0.16f * float(i), s = std::sqrt(1 - z * z), turn = 0.7f * float(i);
+    const BsdfContext view = prepare(bsdf, vec3(-s, 0, z));
+    const vec3 f = evaluate(bsdf, view, vec3(s * std::cos(turn), s * std::sin(turn), z));
+    hash.add(std::string_view(reinterpret_cast<const char*>(&f), sizeof f));
+  }
+  return hash.text();
+}
 
 std::string text(vec3 v) {
   return fmt::format("{:a} {:a} {:a}", v.x, v.y, v.z);
@@ -90,6 +103,7 @@ std::string projection_key(const Bsdf& b, const ShProjectionOptions& o) {
                        int(b.kind), text(b.diffuse), text(b.specular), text(b.eta), text(b.k), b.alpha_x,
                        b.alpha_y, b.exponent);
   }
+  what += " reflecting " + samples(b);
   return fmt::format("projection {}: {}; bands {} share {:a} most {} azimuths {} window {} {:a}",
                      kProjectionVersion, what, o.bands, o.share, o.most_bands, o.azimuths, o.window,
                      o.window_size);

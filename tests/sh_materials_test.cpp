@@ -4,96 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 
-#include "materials/sh_cache.h"
-#include "sh/basis.h"
+#include "materials/measured_brdf.h"
+#include "materials/sh_projector.h"
 #include "sh/quadrature.h"
-#include "tests/bsdf_cases.h"
-#include "tests/bsdf_quadrature.h"
+#include "tests/sh_materials_support.h"
 
 namespace zonal::test {
 namespace {
 
-namespace fs = std::filesystem;
 constexpr double kPiD = 3.14159265358979323846;
-
-/// A cache of the test's own, empty at first.
-struct ShMaterialsTest : testing::Test {
-  fs::path folder =
-      fs::path(testing::TempDir()) /
-      ("zonal_cache_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  ShMaterialsTest() {
-    fs::remove_all(folder);
-    setenv("ZONAL_CACHE", folder.c_str(), 1);
-  }
-  ~ShMaterialsTest() override {
-    unsetenv("ZONAL_CACHE");
-    fs::remove_all(folder);
-  }
-  std::vector<fs::path> files() const {
-    std::vector<fs::path> found;
-    if (fs::exists(folder)) {
-      for (const auto& entry : fs::directory_iterator(folder)) found.push_back(entry.path());
-    }
-    return found;
-  }
-};
-
-using List = std::vector<std::unique_ptr<Material>>;
-template <class Kind>
-List list_of(Kind kind) {
-  List list;
-  list.push_back(std::make_unique<Kind>(std::move(kind)));
-  return list;
-}
-
-/// [channel][coefficient], the layout with m >= 0 alone or with all.
-using Coefficients = std::vector<std::vector<double>>;
-
-/// Integrals of F or F' times each basis function, in the view frame.
-Coefficients by_quadrature(const Case& c, ShTable table, vec3 w_out, int bands, bool mirrored) {
-  const BsdfContext view = prepare(c.bsdf, w_out);
-  const ViewFrame frame(w_out);
-  Coefficients out(3, std::vector<double>(size_t(sh_count(bands, mirrored))));
-  std::vector<double> Y(size_t(sh::count(bands)));
-  SphericalGrid(w_out, c.width).integrate([&](vec3 w, double weight) {
-    if (w.z <= 0) return;
-    const vec3 f = evaluate(c.bsdf, view, w) * (table == ShTable::brdf_cosine ? w.z : 1.0f);
-    sh::evaluate(bands, glm::normalize(glm::dvec3(frame.to_view(w))), Y.data());
-    for (int l = 0; l < bands; ++l) {
-      for (int m = mirrored ? 0 : -l; m <= l; ++m) {
-        const double y = Y[size_t(sh::index(l, m))] * weight;
-        for (int k = 0; k < 3; ++k) out[size_t(k)][size_t(sh_index(l, m, mirrored))] += y * f[k];
-      }
-    }
-  });
-  return out;
-}
-
-Coefficients looked_up(const ShMaterials& materials, const Bsdf& bsdf, ShTable table, vec3 w_out, int bands) {
-  const int stride = sh_count(bands, materials.mirrored(0)) + 5;
-  std::vector<float> rgb(3 * size_t(stride), NAN);
-  materials.look_up(0, bsdf, table, w_out, bands, stride, rgb.data());
-  Coefficients out;
-  for (int k = 0; k < 3; ++k) out.emplace_back(rgb.begin() + k * stride, rgb.begin() + (k + 1) * stride - 5);
-  return out;
-}
-
-/// Norm of the difference over that of the truth, three channels together.
-double relative_error(const Coefficients& got, const Coefficients& truth) {
-  double difference = 0, energy = 0;
-  for (size_t k = 0; k < 3; ++k) {
-    for (size_t i = 0; i < truth[k].size(); ++i) {
-      difference += std::pow(got[k][i] - truth[k][i], 2), energy += truth[k][i] * truth[k][i];
-    }
-  }
-  return std::sqrt(difference / energy);
-}
+using ShMaterialsTest = OwnCache;
 
 Case at_point(const Material& m, vec2 uv) {
   const Bsdf b = m.at(uv);
@@ -334,71 +257,41 @@ TEST_F(ShMaterialsTest, black_points_and_directions_below_are_zero) {
   EXPECT_EQ(rgb, std::vector<float>(30, 0.0f));
 }
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-MetallicRoughnessMaterial plain() {
-  MetallicRoughnessMaterial m;
-  m.roughness.value = 0.7f;
-  return m;
-}
-
-TEST_F(ShMaterialsTest, the_cache_gives_the_same_bits) {
-  const auto once = [&] {
-    const ShMaterials materials(list_of(plain()), {.bands = 3});
-    return looked_up(materials, plain().at(vec2(0)), ShTable::brdf, direction(33.3f, 5), 3);
-  };
-  const Coefficients projected = once();
-  ASSERT_EQ(files().size(), 1u);
-  const auto written = fs::last_write_time(files()[0]);
-  EXPECT_EQ(once(), projected);
-  ASSERT_EQ(files().size(), 1u);
-  EXPECT_EQ(fs::last_write_time(files()[0]), written) << "read, not made anew";
-}
-
-TEST_F(ShMaterialsTest, damaged_and_foreign_files_of_the_cache_are_made_anew) {
-  const auto once = [&] {
-    const ShMaterials materials(list_of(plain()), {.bands = 3});
-    return looked_up(materials, plain().at(vec2(0)), ShTable::brdf, direction(33.3f, 5), 3);
-  };
-  const Coefficients truth = once();
-  ASSERT_EQ(files().size(), 1u);
-  const fs::path file = files()[0];
-  const std::string whole = bytes_of(file);
-  std::string flipped = whole;
-  flipped[flipped.size() / 2] = char(flipped[flipped.size() / 2] ^ 4);
-  for (const std::string& damaged : {std::string(), whole.substr(0, 100), flipped, std::string("text")}) {
-    std::ofstream(file, std::ios::binary) << damaged;
-    EXPECT_EQ(once(), truth);
-    EXPECT_EQ(bytes_of(file), whole);
+/// A smooth lobe about the mirror direction that no model of ours has, reciprocal and mirrored.
+struct MadeUpBrdf : MeasuredBrdf {
+  vec3 evaluate(vec3 w_out, vec3 w_in) const override {
+    if (w_out.z <= 0 || w_in.z <= 0) return vec3(0);
+    const float across = w_out.x * w_in.x + w_out.y * w_in.y, along = w_out.z * w_in.z;
+    return vec3(0.2f, 0.1f, 0.05f) * (1 + sqr(along - across));
   }
-  // Another material's table under this name.
-  ShProjection other = project_material(lambert(vec3(0.1f)).bsdf, {.bands = 1});
-  other.source = "another";
-  const std::vector<std::byte> bytes = write_shmat(other);
-  std::ofstream(file, std::ios::binary)
+  vec3 sample_direction(vec3, float, vec2) const override { return vec3(0, 0, 1); }
+  float pdf(vec3, vec3) const override { return 1; }
+  bool isotropic() const override { return true; }
+  const char* format() const override { return "made up"; }
+};
+
+// A polynomial of degree 2: three bands of F hold all that the hemisphere's edge leaves to them. Tolerances
+// as above.
+TEST_F(ShMaterialsTest, measured_materials_are_projected_or_read_from_their_file) {
+  MeasuredMaterial m;
+  m.brdf = std::make_shared<MadeUpBrdf>();
+  const vec3 w_out = direction(48, 20);
+  const Case c{"", m.at(vec2(0)), 1};
+  const Coefficients truth = by_quadrature(c, ShTable::brdf_cosine, w_out, 5, true);
+  const ShMaterials projected(list_of(m), {.bands = 5});
+  EXPECT_TRUE(files().empty()) << "no file, so nothing to know it by";
+  EXPECT_LT(relative_error(looked_up(projected, c.bsdf, ShTable::brdf_cosine, w_out, 5), truth), 0.003);
+
+  const std::vector<std::byte> bytes = write_shmat(project_material(c.bsdf, {.bands = 4}), {.half = false});
+  m.sh_file = (fs::path(testing::TempDir()) / (std::to_string(getpid()) + "_made_up.shmat")).string();
+  std::ofstream(m.sh_file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-  EXPECT_EQ(once(), truth);
-  EXPECT_EQ(bytes_of(file), whole);
-}
-
-TEST_F(ShMaterialsTest, without_a_place_for_the_cache_it_goes_on) {
-  std::ofstream(folder.string()) << "a file where the folder should be";
-  const ShMaterials materials(list_of(plain()), {.bands = 2});
-  EXPECT_EQ(materials.max_bands(), 2);
-}
-
-TEST_F(ShMaterialsTest, settings_and_contents_have_keys_of_their_own) {
-  const Bsdf b = plain().at(vec2(0));
-  Bsdf other = b;
-  other.alpha_x = std::nextafter(b.alpha_x, 1.0f);
-  const std::set<std::string> keys = {projection_key(b, {}), projection_key(other, {}),
-                                      projection_key(b, {.bands = 9}), projection_key(b, {.share = 0.9f}),
-                                      projection_key(b, {.window = "hann"})};
-  EXPECT_EQ(keys.size(), 5u);
-  EXPECT_EQ(projection_key(b, {}), projection_key(plain().at(vec2(0.9f)), {}));
+  const ShMaterials opened(list_of(m), {.bands = 9});
+  EXPECT_EQ(opened.bands(0, c.bsdf, ShTable::brdf, w_out), 4) << "as many as the file has";
+  EXPECT_LT(relative_error(looked_up(opened, c.bsdf, ShTable::brdf_cosine, w_out, 4),
+                           by_quadrature(c, ShTable::brdf_cosine, w_out, 4, true)),
+            0.003);
+  fs::remove(m.sh_file);
 }
 
 }  // namespace
