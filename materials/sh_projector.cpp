@@ -230,7 +230,7 @@ BandStudy study_bands(const Bsdf& bsdf, double theta_out, int most_bands) {
   assert(most_bands >= 1 && most_bands <= ShMaterial::kMaxBands);
   const double asymmetry = is_isotropic(bsdf) ? mirror_asymmetry(bsdf, theta_out) : 1;
   const bool mirrored = asymmetry <= kMirrorTolerance;
-  HemisphereOptions options{.half = mirrored, .average = asymmetry > kAverage};
+  HemisphereOptions options{.half = mirrored, .average = asymmetry > kAverage, .hemispherical = true};
   options.resolve_bands = std::max(options.resolve_bands, most_bands);
   if (!mirrored) options.most_nodes *= 2;
   const HemisphereNodes nodes = hemisphere_nodes(bsdf, 0, theta_out, options);

@@ -31,6 +31,12 @@ double chord(const Direction& a, const Direction& b) {
 enum Part { upper, strip };
 constexpr double kStripHeight = 0.00872653549837393;  // cos 89.5 degrees
 
+/// Where hemispherical harmonics see a direction (sh/hemispherical.h).
+Direction squeezed(const Direction& w) {
+  const double turn = 2 * std::sqrt(w.z / (1 + w.z));
+  return {turn * w.x, turn * w.y, 2 * w.z - 1};
+}
+
 /// From (t, phi) of the half vector to w_in, t in [0, 1].
 struct Map {
   double sin_out, cos_out;
@@ -47,11 +53,18 @@ struct Map {
     const double widest = 0.5 * std::atan2(cos_out, -sin_out * c);
     const double radius = std::sqrt(cos_out * cos_out + sin_out * sin_out * c * c);
     const double edge = std::max(0.0, widest - 0.5 * std::asin(std::min(1.0, kStripHeight / radius)));
-    // Depth is counted from the horizon in the strip, so that heights are exact where they go to zero.
-    const double depth = part == upper ? widest - t * t * edge : (1 - t * t) * (widest - edge);
-    const double theta = part == upper ? t * t * edge : widest - depth;
+    // Depth is counted from the horizon, so that heights are exact where they go to zero. The strip's sin^2
+    // is quadratic at both ends: at a highlight that reaches into it, and at the horizon, where hemispherical
+    // harmonics are functions of sqrt z.
+    double theta, depth, slope;
+    if (part == upper) {
+      theta = t * t * edge, depth = widest - theta, slope = 2 * t * edge;
+    } else {
+      const double low = std::sin(0.5 * pi * t), high = std::cos(0.5 * pi * t), strip = widest - edge;
+      theta = edge + low * low * strip, depth = high * high * strip, slope = pi * low * high * strip;
+    }
     const double sin_h = std::sin(theta), h_dot_o = sin_h * c * sin_out + std::cos(theta) * cos_out;
-    if (jacobian) *jacobian = 8 * h_dot_o * sin_h * t * (part == upper ? edge : widest - edge);
+    if (jacobian) *jacobian = 4 * h_dot_o * sin_h * slope;
     return {2 * h_dot_o * sin_h * c - sin_out, 2 * h_dot_o * sin_h * s, radius * std::sin(2 * depth)};
   }
 };
@@ -177,8 +190,14 @@ void Integrator::fill(Cell* cell) const {
   }
 }
 
-/// Splits [t0, t1] x [phi0, phi1] until half of a cell's width is less than `reach` on the sphere of w_in.
-void seed(const Map& map, Part part, double t0, double t1, double phi0, double phi1, double reach,
+/// How far half of a cell may reach on the sphere of w_in, and whether also on the squeezed one.
+struct Reach {
+  double chord;
+  bool hemispherical;
+};
+
+/// Splits [t0, t1] x [phi0, phi1] until that is so.
+void seed(const Map& map, Part part, double t0, double t1, double phi0, double phi1, Reach reach,
           std::vector<Cell>* cells) {
   const double t[3] = {t0, 0.5 * (t0 + t1), t1}, phi[3] = {phi0, 0.5 * (phi0 + phi1), phi1};
   Direction w[3][3];
@@ -189,7 +208,15 @@ void seed(const Map& map, Part part, double t0, double t1, double phi0, double p
     along_t = std::max({along_t, chord(w[i][0], w[i][1]), chord(w[i][1], w[i][2])});
     along_phi = std::max({along_phi, chord(w[0][i], w[1][i]), chord(w[1][i], w[2][i])});
   }
-  if (std::max(along_t, along_phi) <= reach || std::max(t1 - t0, phi1 - phi0) < 1e-4) {
+  if (reach.hemispherical) {
+    for (auto& row : w)
+      for (Direction& d : row) d = squeezed(d);
+    for (int i = 0; i < 3; ++i) {
+      along_t = std::max({along_t, chord(w[i][0], w[i][1]), chord(w[i][1], w[i][2])});
+      along_phi = std::max({along_phi, chord(w[0][i], w[1][i]), chord(w[1][i], w[2][i])});
+    }
+  }
+  if (std::max(along_t, along_phi) <= reach.chord || std::max(t1 - t0, phi1 - phi0) < 1e-4) {
     cells->push_back({.part = part, .t0 = t0, .t1 = t1, .phi0 = phi0, .phi1 = phi1});
   } else if (along_t > along_phi) {
     seed(map, part, t0, t[1], phi0, phi1, reach, cells);
@@ -201,7 +228,7 @@ void seed(const Map& map, Part part, double t0, double t1, double phi0, double p
 }
 
 /// Rings that narrow towards the highlight, so that none of width 1e-4 slips through, cut into cells.
-std::vector<Cell> seeds(const Map& map, bool half, double reach) {
+std::vector<Cell> seeds(const Map& map, bool half, Reach reach) {
   std::vector<Cell> cells;
   const int sectors = half ? 4 : 8;
   for (int sector = 0; sector < sectors; ++sector) {
@@ -228,7 +255,8 @@ std::vector<Cell> seeds(const Map& map, bool half, double reach) {
 HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_out,
                                  const HemisphereOptions& options) {
   const Integrator integrator(bsdf, azimuth, theta_out, options.half && options.average);
-  std::vector<Cell> cells = seeds(integrator.map(), options.half, kPhase / options.resolve_bands);
+  std::vector<Cell> cells =
+      seeds(integrator.map(), options.half, {kPhase / options.resolve_bands, options.hemispherical});
   HemisphereNodes nodes;
   double total[kIntegrands] = {};
   for (Cell& cell : cells) {
@@ -300,7 +328,7 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
 double mirror_asymmetry(const Bsdf& bsdf, double theta_out) {
   const Integrator integrator(bsdf, 0, theta_out);
   double odd = 0, all = 0;
-  for (Cell& cell : seeds(integrator.map(), true, kPhase / 16)) {
+  for (Cell& cell : seeds(integrator.map(), true, {kPhase / 16, false})) {
     integrator.fill(&cell);
     std::array<vec3, kNodes> other;
     for (Direction& w : cell.w) w.y = -w.y;

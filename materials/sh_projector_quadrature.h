@@ -20,10 +20,11 @@ namespace zonal {
 struct HemisphereOptions {
   bool half =
       false;  ///< azimuths 0..pi alone, weights doubled: for materials symmetric about the plane of w_out
-  bool average = false;     ///< with half: F is the mean of both sides, where they differ a little
-  int resolve_bands = 32;   ///< the nodes resolve at least this many bands everywhere
-  double tolerance = 5e-7;  ///< of one cell, as a share of the integral of F'
-  int most_nodes = 100000;  ///< the search for better cells ends here
+  bool average = false;        ///< with half: F is the mean of both sides, where they differ a little
+  bool hemispherical = false;  ///< the nodes are meant for ShBasis::hemispherical too
+  int resolve_bands = 32;      ///< the nodes resolve at least this many bands everywhere
+  double tolerance = 5e-7;     ///< of one cell, as a share of the integral of F'
+  int most_nodes = 100000;     ///< the search for better cells ends here
 };
 
 /// Directions are in the view frame of sh_material.h.
