@@ -30,16 +30,17 @@ struct Options {
 };
 
 template <bool second>
-[[gnu::always_inline]] inline float specular_at(const VsglReceivers& r, int k, vec3 v, vec3 axis, float K) {
+[[gnu::always_inline]] inline float specular_at(const VsglReceivers& r, int k, vec3 v, vec3 axis, float K,
+                                                vec3& peak) {
   if constexpr (second) {
     const VsglFilteredReceiver f{v, vec2(r.lobe[0][k], r.lobe[1][k]),
                                  vec3(r.lobe[2][k], r.lobe[3][k], r.lobe[4][k]), r.lobe[5][k],
                                  vec3(r.lobe[6][k], r.lobe[7][k], r.lobe[8][k])};
-    return vsgl_specular_2024(f, axis, K);
+    return vsgl_specular_2024(f, axis, K, peak);
   } else {
     const VsglAsgReceiver a{vec2(r.lobe[0][k], r.lobe[1][k]), r.lobe[2][k], r.lobe[3][k], r.lobe[4][k],
                             r.lobe[5][k]};
-    return vsgl_specular_2015(a, axis, K);
+    return vsgl_specular_2015(a, axis, K, peak);
   }
 }
 
@@ -62,12 +63,13 @@ void add_lobe(const TilePoints& p, const VsglReceivers& r, VsglReceivers::Run ru
     float red = 0, green = 0, blue = 0;
     if constexpr (specular) {
       const float s = 1.0f - vsgl_base_cosine(local.z, K), s2 = s * s;
-      diffuse *= max(r.base[k] + r.square[k] * s2 + r.fifth[k] * (s2 * s2 * s), 0.0f);  // (VSGL-18)
+      diffuse *= max(r.base[k] + r.square[k] * s2 + r.fifth[k] * (s2 * s2 * s), 0.0f);  // (VSGL-19)
 
-      // Fresnel's factor at the half vector of camera and light axis, for the whole lobe.      (VSGL-19)
+      // (VSGL-17) Fresnel's factor at the half vector of camera and peak stands for that of the whole lobe.
       const vec3 v(p.ox[k], p.oy[k], p.oz[k]);
-      const float reflected = specular_at<second>(r, k, v, local, K);
-      const float cosine = vsgl_half_cosine(v, local);
+      vec3 peak;
+      const float reflected = specular_at<second>(r, k, v, local, K, peak);
+      const float cosine = vsgl_half_cosine(v, peak);
       const float schlick = schlick_weight(cosine);
       red = r.f0r[k] + r.f1r[k] * schlick;
       green = r.f0g[k] + r.f1g[k] * schlick;

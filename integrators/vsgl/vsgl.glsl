@@ -153,8 +153,8 @@ KERNEL VsglAsgReceiver vsgl_asg_receiver(vec3 v, vec2 alpha2) {
 
 // (VSGL-15) Integral of f cos (without Fresnel's factor) over G(w; axis, K), `axis` local. GGX is an anisotropic SG about
 // the mirrored direction z (Xu et al. 2013), whose product with an isotropic SG has a closed integral; what is left of
-// the BRDF, shadowing and cosine, is taken at the product's axis.
-KERNEL float vsgl_specular_2015(VsglAsgReceiver r, vec3 axis, float K) {
+// the BRDF, shadowing and cosine, is taken at the product's axis, `peak`.
+KERNEL float vsgl_specular_2015(VsglAsgReceiver r, vec3 axis, float K, OUT(vec3) peak) {
   float sharp = max(1.0f / r.a2 - 1.0f, 0.0f);  // over half vectors
   float along = 0.25f * sharp;                   // in the plane of camera and normal
   float across = along / (r.cosine * r.cosine);
@@ -174,7 +174,8 @@ KERNEL float vsgl_specular_2015(VsglAsgReceiver r, vec3 axis, float K) {
   float weight = 2.0f * along / r.cosine;
   vec3 sum = vec3(K * axis.x - weight * r.sine * r.heading.x, K * axis.y - weight * r.sine * r.heading.y,
                   K * axis.z + weight * r.cosine);
-  float cosine = clamp(sum.z / sqrt(max(dot(sum, sum), 1e-37f)), 0.0f, 1.0f);
+  peak = sum * (1.0f / sqrt(max(dot(sum, sum), 1e-37f)));
+  float cosine = clamp(peak.z, 0.0f, 1.0f);
   float stretch = sqrt(r.a2 * (1.0f - cosine * cosine) + cosine * cosine);
   return integral * cosine / (6.28318531f * r.a2 * (r.stretch * cosine + stretch * r.cosine));
 }
@@ -208,8 +209,8 @@ KERNEL VsglFilteredReceiver vsgl_filtered_receiver(vec3 v, vec2 alpha2) {
 
 // (VSGL-16) Integral of f cos (without Fresnel's factor) over G(w; axis, K), `axis` local: the distribution of normals is
 // widened by the light's own spread, seen through the half vector's Jacobian, and evaluated once; the share of the light
-// above the horizon stands for shadowing.
-KERNEL float vsgl_specular_2024(VsglFilteredReceiver r, vec3 axis, float K) {
+// above the horizon stands for shadowing. `peak` is the axis of light and reflection together.
+KERNEL float vsgl_specular_2024(VsglFilteredReceiver r, vec3 axis, float K, OUT(vec3) peak) {
   // Widened in the projected space, where an SG of sharpness K has the variance 1/K.
   float t = 2.0f / K;
   float fxx = r.width.x + t * r.spread.x;
@@ -237,16 +238,17 @@ KERNEL float vsgl_specular_2024(VsglFilteredReceiver r, vec3 axis, float K) {
 
   vec3 u = r.mirror + K * axis;
   float length_u = max(sqrt(dot(u, u)), 1e-20f);
-  float lit = sg_above_horizon(u.z / length_u, length_u);
+  peak = u * (1.0f / length_u);
+  float lit = sg_above_horizon(peak.z, length_u);
   return lit * lobe * sg_integral(K);
 }
 
-// Cosine between the camera's direction and the half vector of it and the light's axis: Fresnel's angle.
-KERNEL float vsgl_half_cosine(vec3 v, vec3 axis) {
-  return sqrt(clamp(0.5f + 0.5f * dot(v, axis), 0.0f, 1.0f));
+// (VSGL-17) Cosine between a direction and the half vector of it and another: Fresnel's angle.
+KERNEL float vsgl_half_cosine(vec3 v, vec3 w) {
+  return sqrt(clamp(0.5f + 0.5f * dot(v, w), 0.0f, 1.0f));
 }
 
-// (VSGL-17) Cosine at which a coat's loss is looked up: that of the product of the light's SG and of an SG of sharpness 2
+// (VSGL-18) Cosine at which a coat's loss is looked up: that of the product of the light's SG and of an SG of sharpness 2
 // about the normal, the mean direction of the light that the base gets.
 KERNEL float vsgl_base_cosine(float cosine, float K) {
   float length2 = K * K + 4.0f + 4.0f * K * cosine;

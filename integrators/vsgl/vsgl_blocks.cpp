@@ -13,18 +13,15 @@ namespace zonal {
 
 namespace {
 
-/// Fresnel's factor, or what stands in its place.
-vec3 mirror_fresnel(const Bsdf& b, float cosine) {
-  switch (b.kind) {
-    case BsdfKind::conductor:
-      return b.specular * fresnel_conductor(cosine, b.eta, b.k);
-    case BsdfKind::coated:
-      return b.specular * fresnel_dielectric(cosine, b.eta.x);
-    case BsdfKind::metallic_roughness:
-      return fresnel_schlick(cosine, b.specular);
-    default:
-      return b.specular;
-  }
+/// Share of light from w_in that leaves in the specular lobe about `axis`: of a coat its table says it;
+/// elsewhere Fresnel's factor at the half vector of both, times what is not masked there (VSGL-12).
+vec3 specular_share(const Bsdf& b, vec3 w_in, vec3 axis, vec2 alpha2) {
+  if (b.kind == BsdfKind::coated) return b.specular * b.coat->row(std::sqrt(b.alpha_x * b.alpha_y)).at(w_in);
+  const float cosine = vsgl_half_cosine(w_in, axis);
+  vec3 fresnel = b.specular;
+  if (b.kind == BsdfKind::conductor) fresnel *= fresnel_conductor(cosine, b.eta, b.k);
+  if (b.kind == BsdfKind::metallic_roughness) fresnel = fresnel_schlick(cosine, b.specular);
+  return fresnel * vsgl_unmasked(w_in, axis, alpha2);
 }
 
 /// Variance along each axis of a square as large as the texel: a texel is a patch, not a point.
@@ -101,8 +98,7 @@ VsglTexel texel_lobes(const VirtualLight& v, VsglGeneration generation) {
       first ? vsgl_reflection_2015(w_in, alpha2, axis) : vsgl_reflection_2024(w_in, alpha2, axis);
   t.axis[1] = normalize(v.frame.to_world(axis));
   t.shortfall[1] = sg_shortfall_of(sharpness);
-  t.flux[1] =
-      v.power * mirror_fresnel(v.bsdf, vsgl_half_cosine(w_in, axis)) * vsgl_unmasked(w_in, axis, alpha2);
+  t.flux[1] = v.power * specular_share(v.bsdf, w_in, axis, alpha2);
   return t;
 }
 

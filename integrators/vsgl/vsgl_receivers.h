@@ -13,7 +13,7 @@ struct VsglReceivers : TileState {
   using Floats = TilePoints::Floats;
 
   alignas(64) Floats dr, dg, db;  ///< albedo of the diffuse part
-  /// (VSGL-18) What a coat leaves of light that comes in at the cosine c: base + square s^2 + fifth s^5, s =
+  /// (VSGL-19) What a coat leaves of light that comes in at the cosine c: base + square s^2 + fifth s^5, s =
   /// 1 - c. Without a coat: 1.
   alignas(64) Floats base, square, fifth;
   alignas(64) Floats f0r, f0g, f0b, f1r, f1g,
@@ -36,7 +36,7 @@ struct VsglReceivers : TileState {
   VsglReceivers(const TilePoints& points, VsglGeneration generation);
 };
 
-/// (VSGL-18) fitted to a coat's table: what of light coming in at cosine c reaches the base and returns to
+/// (VSGL-19) fitted to a coat's table: what of light coming in at cosine c reaches the base and returns to
 /// the camera, relative to Lambert's base of the same albedo.
 struct VsglCoat {
   float base = 1, square = 0, fifth = 0;
