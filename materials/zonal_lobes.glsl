@@ -50,8 +50,8 @@ KERNEL float zonal_lobe_cap(ZonalLobe lobe, ZonalCap cap, float x, int bands) {
 }
 
 // Irradiance by three bands of light and of cosine, the quadratic form of Sec. 5.2.7: E(z) = c3 L2 z^2 + 2 c2 L1 z + c4 L0 -
-// c5 L2, from zonal coefficients of the light and z = dot(n, w). A small light's is off by up to 0.064 of pi L (the bands left
-// out), and below 0 behind the surface.
+// c5 L2, from zonal coefficients of the light and z = dot(n, w). A small light's is off by up to 9.4 %
+// of what it gives overhead, most at the horizon (the bands left out), and below 0 behind the surface.
 KERNEL float zonal_diffuse(float L0, float L1, float L2, float z) {
   float c2 = 0.511663354f;  // sqrt(pi/12)
   float c3 = 0.743124718f;  // 3/16 sqrt(5 pi)
