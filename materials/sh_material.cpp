@@ -59,12 +59,13 @@ void expect(const std::string& file, const char* field, T found, T expected) {
   if (found != expected) fail(file, field, fmt::format("{}", found), fmt::format("{}", expected));
 }
 
-bool all_finite(const std::byte* data, size_t words, bool half) {
+/// Single floats are kept far enough from infinity for sums of products of two.
+bool all_usable(const std::byte* data, size_t words, bool half) {
+  constexpr uint32_t kLargest = std::bit_cast<uint32_t>(1e15f);
   for (size_t i = 0; i < words; ++i) {
     uint32_t w;
     std::memcpy(&w, data + 4 * i, 4);
-    if (half ? (w & 0x7c00u) == 0x7c00u || (w & 0x7c000000u) == 0x7c000000u
-             : (w & 0x7f800000u) == 0x7f800000u)
+    if (half ? (w & 0x7c00u) == 0x7c00u || (w & 0x7c000000u) == 0x7c000000u : (w & 0x7fffffffu) > kLargest)
       return false;
   }
   return true;
@@ -163,7 +164,9 @@ void ShMaterial::Impl::check(const std::string& file) {
   for (float x : {h.albedo[0], h.albedo[1], h.albedo[2], h.asymmetry})
     if (!std::isfinite(x) || x < 0)
       fail(file, "albedo, asymmetry", fmt::format("{}", x), "finite numbers, none negative");
-  if (!all_finite(data, h.data_words, half)) fail(file, "coefficients", "NaN or infinity", "finite numbers");
+  if (!all_usable(data, h.data_words, half))
+    fail(file, "coefficients", half ? "NaN or infinity" : "NaN, infinity or more than 1e15",
+         "finite numbers");
 }
 
 ShMaterial ShMaterial::open(const std::string& file) {
