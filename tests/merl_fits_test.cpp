@@ -1,7 +1,10 @@
 // Published fits against their equations worked out by hand, against each other, and their files when wrong.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
@@ -136,6 +139,44 @@ TEST_F(MerlFitFiles, wrong_networks_are_refused_by_line) {
   expect_refused("6 999999999\n", "", {"layer 1, outputs", "999999999"});
   expect_refused("6 3\n1 0 0\n0 0 0\n0 1 0\n0 0 0\n10 0 0\n0 0 1\n0 0 inf\n", "", {"line 8", "bias", "inf"});
   expect_refused("6 3\n1 0 0\n0 0 0\n0 1 0\n0 0 0\n10 0 0\n0 0 1\n0 0 0\n", "gold", {"network", "gold"});
+}
+
+/// Runs `zonal material merl ...` in the folder; what it printed, then its exit code.
+std::string run_command(const TemporaryFolder& folder, const std::string& arguments) {
+  const std::string line = "cd " + folder / "" + " && " ZONAL_PROGRAM " material merl " + arguments + " 2>&1";
+  FILE* pipe = popen(line.c_str(), "r");
+  std::string out;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += char(c);
+  const int status = pclose(pipe);
+  return out + std::to_string(WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+}
+
+TEST_F(MerlFitFiles, the_command_writes_files_named_as_fits) {
+  written(kAbcHeader + "gold,0.1,0.2,0.3,0,0,0,10,1,1.5\n");
+  const std::string out = run_command(folder, "fit.txt --material gold");
+  EXPECT_NE(out.find("gold.fit-abc.binary"), std::string::npos) << out;
+  EXPECT_EQ(out.back(), '0') << out;
+  const auto brdf = load_measured(folder / "gold.fit-abc.binary");
+  EXPECT_NEAR(brdf->albedo.z, 0.3f, 1e-3f);
+  EXPECT_EQ(run_command(folder, "ggx:roughness=0.5,f0=0.8 -o metal.binary --quiet"), "0");
+  // A rough metal keeps most of its F0 of 0.8 (docs/materials.md: 0.9 to 0.83 between roughness 0.3 and 0.6).
+  EXPECT_NEAR(load_measured(folder / "metal.binary")->albedo.x, 0.7f, 0.1f);
+
+  for (const auto& [arguments, word] :
+       std::vector<std::pair<std::string, std::string>>{{"fit.txt --material golf", "did you mean \"gold\""},
+                                                        {"fit.txt", "1 materials"},
+                                                        {"ggx:rough=0.3", "did you mean \"roughness\""},
+                                                        {"ggx:roughness=2", "in [0, 1]"},
+                                                        {"ggx:roughness", "key=number"},
+                                                        {"gxg:roughness=1", "did you mean \"ggx\""},
+                                                        {"lambert --material gold", "expected none"},
+                                                        {"absent.csv", "cannot be opened"},
+                                                        {"lambert -o no/such/folder.binary", "no folder"}}) {
+    const std::string refused = run_command(folder, arguments);
+    EXPECT_EQ(refused.back(), '2') << refused;
+    EXPECT_EQ(std::count(refused.begin(), refused.end(), '\n'), 1) << refused;
+    EXPECT_NE(refused.find(word), std::string::npos) << word << ": " << refused;
+  }
 }
 
 /// Light a fit reflects of what arrives from `degrees`, per channel, by the midpoint rule in its own cells:
