@@ -259,9 +259,10 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
       seeds(integrator.map(), options.half, {kPhase / options.resolve_bands, options.hemispherical});
   HemisphereNodes nodes;
   double total[kIntegrands] = {};
+  size_t made = 0;
   for (Cell& cell : cells) {
     integrator.fill(&cell);
-    nodes.evaluations += kNodes;
+    made += kNodes;
     for (int q = 0; q < kIntegrands; ++q) total[q] += cell.total[q];
   }
 
@@ -276,7 +277,7 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
   std::priority_queue<Entry> queue;
   for (size_t i = 0; i < cells.size(); ++i) queue.push({error(cells[i]), i});
   while (!queue.empty() && queue.top().first > options.tolerance &&
-         nodes.evaluations + 2 * kNodes <= size_t(options.most_nodes)) {
+         made + 2 * kNodes <= size_t(options.most_nodes)) {
     const size_t index = queue.top().second;
     queue.pop();
     const Cell& worst = cells[index];
@@ -294,7 +295,7 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
     for (int q = 0; q < kIntegrands; ++q) total[q] -= worst.total[q];
     for (Cell* cell : {&first, &second}) {
       integrator.fill(cell);
-      nodes.evaluations += kNodes;
+      made += kNodes;
       for (int q = 0; q < kIntegrands; ++q) total[q] += cell->total[q];
     }
     cells[index] = first;
@@ -302,6 +303,8 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
     queue.push({error(cells[index]), index});
     queue.push({error(cells.back()), cells.size() - 1});
   }
+
+  nodes.evaluations = options.half && options.average ? 2 * made : made;
 
   const size_t size = cells.size() * kNodes;
   for (auto* v : {&nodes.x, &nodes.y, &nodes.z, &nodes.weight, &nodes.f[0], &nodes.f[1], &nodes.f[2]})
