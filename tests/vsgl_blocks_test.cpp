@@ -86,7 +86,9 @@ TEST(VsglBlocks, sharp_lobes_keep_their_sharpness) {
     // agree.
     const VsglLobe second = lobe_of(texels, 1, VsglGeneration::y2024);
     EXPECT_GE(second.axis.z, first.axis.z - 1e-6f) << alpha;
-    if (alpha < 0.02f) EXPECT_NEAR(second.sharpness / first.sharpness, 1, 3 * alpha) << alpha;
+    if (alpha < 0.02f) {
+      EXPECT_NEAR(second.sharpness / first.sharpness, 1, 3 * alpha) << alpha;
+    }
   }
 }
 
