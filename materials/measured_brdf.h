@@ -5,9 +5,9 @@
 ///     vec3 f = paper->evaluate(w_out, w_in);       // 1/sr
 ///     paper->evaluate(w_out, n, w_in, f);          // many w_in at once: what depends on w_out is done once
 ///
-/// Directions are unit, in the shading frame, away from the surface. Measurements are not exactly reciprocal: w_out (the
-/// camera's side) is the direction that indexes the data, w_in the other one; docs/materials.md has the size of the
-/// difference. Immutable after loading, so that all threads share it.
+/// Directions are unit, in the shading frame, away from the surface. Measurements are not exactly reciprocal:
+/// w_out (the camera's side) is the direction that indexes the data, w_in the other one; docs/materials.md
+/// has the size of the difference. Immutable after loading, so that all threads share it.
 
 #include <memory>
 #include <string>
@@ -25,8 +25,8 @@ class MeasuredBrdf {
   virtual vec3 evaluate(vec3 w_out, vec3 w_in) const = 0;
   /// Draws w_in; z <= 0 where none was found.
   virtual vec3 sample_direction(vec3 w_out, float u_lobe, vec2 u) const = 0;
-  /// Density of `sample_direction`, 1/sr; > 0 wherever `evaluate` is. Its integral lacks of 1 the share of draws without
-  /// a direction.
+  /// Density of `sample_direction`, 1/sr; > 0 wherever `evaluate` is. Its integral lacks of 1 the share of
+  /// draws without a direction.
   virtual float pdf(vec3 w_out, vec3 w_in) const = 0;
 
   /// f[i] = evaluate(w_out, w_in[i]) up to rounding, for i < n. w_in and f may not overlap.
@@ -41,9 +41,9 @@ class MeasuredBrdf {
   /// "MERL" or "RGL": the format's name.
   virtual const char* format() const = 0;
 
-  std::string file;          ///< as given to load_measured
-  std::string description;   ///< what the file says of itself, may be empty
-  vec3 albedo{0};            ///< hemispherical, [0, 1], approximate: mean over cosine-weighted w_out
+  std::string file;             ///< as given to load_measured
+  std::string description;      ///< what the file says of itself, may be empty
+  vec3 albedo{0};               ///< hemispherical, [0, 1], approximate: mean over cosine-weighted w_out
   size_t negative_samples = 0;  ///< of the file, noise and out-of-gamut colours; `evaluate` answers 0 there
   std::vector<std::string> notes;  ///< what a user should know of this file, a sentence each; mostly none
 
@@ -54,8 +54,9 @@ class MeasuredBrdf {
   void estimate_albedo();
 };
 
-/// Reads a file by what it contains: RGL's "tensor_file" magic, else MERL's dimensions. Throws SceneError with the file,
-/// the field, what was found and what was expected; no allocation is sized by an unchecked header.
+/// Reads a file by what it contains: RGL's "tensor_file" magic, else MERL's dimensions. Throws SceneError
+/// with the file, the field, what was found and what was expected; no allocation is sized by an unchecked
+/// header.
 std::unique_ptr<MeasuredBrdf> load_measured(const std::string& file);
 
 }  // namespace zonal

@@ -80,7 +80,8 @@ TEST(MeasuredScene, wrong_files_are_told) {
   };
   const std::string where = folder.path("scene.json") + ": /materials/0/file: ";
   EXPECT_EQ(error("no.bsdf"), where + "there is no file \"" + folder.path("no.bsdf") + "\", expected one");
-  folder.write("cut.bsdf", rgl_tensors({.elevations = 3, .facets = 5, .side = 4}).bytes().substr(0, 500));
+  folder.write("cut.bsdf",
+               rgl_tensors({.surface = {}, .elevations = 3, .facets = 5, .side = 4}).bytes().substr(0, 500));
   EXPECT_EQ(error("cut.bsdf").find(where + folder.path("cut.bsdf") + ": field \""), 0u) << error("cut.bsdf");
   folder.write("other.bsdf", "not a tensor file at all");
   EXPECT_EQ(error("other.bsdf"),

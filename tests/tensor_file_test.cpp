@@ -72,8 +72,7 @@ TEST(TensorFile, every_mistake_is_answered) {
       {with(kOffset, uint64_t{1} << 60),
        R"(field "text": found 5 bytes of data at byte 1152921504606846976, expected)"},
       {with(kOffset, uint64_t{good.size() - 2}), R"(field "text": found )"},
-      {with(kLength, uint64_t{0}),
-       R"(field "text": found shape [0] of u8, expected lengths of at least 1)"},
+      {with(kLength, uint64_t{0}), R"(field "text": found shape [0] of u8, expected lengths of at least 1)"},
       {with(kLength, ~uint64_t{0}),
        R"(field "text": found shape [18446744073709551615] of u8, expected lengths)"},
       {good.substr(0, good.size() - 1), R"(field "numbers": found 24 bytes of data at byte )"},
@@ -122,7 +121,7 @@ TEST(TensorFile, types_and_shapes_are_told) {
 
 // ---- what makes a tensor file a BRDF ---------------------------------------------------------------------
 
-constexpr RglSpec kSmall{.elevations = 3, .facets = 5, .side = 4};
+constexpr RglSpec kSmall{.surface = {}, .elevations = 3, .facets = 5, .side = 4};
 
 /// The error that a small file gives after a change.
 std::string rgl_error(const std::function<void(TensorWriter&)>& change) {
