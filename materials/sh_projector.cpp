@@ -91,9 +91,17 @@ struct RowPair {
 
 RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirrored, double asymmetry,
                     const ShProjectionOptions& options) {
-  const int most = options.bands > 0 ? options.bands : options.most_bands;
+  const bool fan = options.azimuths > 1;
+  const int most = options.bands > 0 ? options.bands
+                   : fan             ? std::min(options.most_bands, kAnisotropicBands)
+                                     : options.most_bands;
   const double theta = ShMaterial::degrees(elevation) * kRadians;
   HemisphereOptions quadrature{.half = mirrored, .average = asymmetry > kAverage};
+  if (fan) {
+    // There are thousands of rows, and few bands that ask for less.
+    quadrature.resolve_bands = 16, quadrature.tolerance = 1e-5, quadrature.most_nodes = 8000;
+  }
+  if (options.nodes > 0) quadrature.resolve_bands = 8, quadrature.most_nodes = options.nodes;
   quadrature.resolve_bands = std::max(quadrature.resolve_bands, most);
   if (!mirrored) quadrature.most_nodes *= 2;
   if (elevation >= 88) quadrature.most_nodes *= 2;  // the highlight is cut by the horizon
@@ -135,6 +143,7 @@ void check(const ShProjectionOptions& o) {
   expect(o.most_bands >= 1 && o.most_bands <= ShMaterial::kMaxBands, "most_bands: expected 1 to 100");
   expect(o.share > 0 && o.share < 1, "share: expected a number in (0, 1)");
   expect(o.azimuths >= 0 && o.azimuths <= 360, "azimuths: expected 0 (automatic) to 360");
+  expect(o.nodes >= 0, "nodes: expected 0 (automatic) or more");
   expect(o.window_size >= 0, "window_size: expected a number >= 0");
   expect(std::find(kWindows.begin(), kWindows.end(), o.window) != kWindows.end(),
          "window: found \"" + o.window + "\"" + did_you_mean(o.window, kWindows));
@@ -175,6 +184,8 @@ ShProjection project_material(const Bsdf& bsdf, const ShProjectionOptions& optio
     out.asymmetry = 1;
   }
 
+  ShProjectionOptions row_options = options;
+  row_options.azimuths = out.azimuths;
   const int rows = out.azimuths * n;
   std::vector<RowPair> pairs(static_cast<size_t>(rows));
   std::atomic<bool> stopped{false};
@@ -191,7 +202,7 @@ ShProjection project_material(const Bsdf& bsdf, const ShProjectionOptions& optio
           }
           const double azimuth = 360.0 * kRadians * (r / n) / out.azimuths;
           pairs[size_t(r)] =
-              project_row(bsdf, azimuth, r % n, out.mirrored, asymmetry[size_t(r % n)], options);
+              project_row(bsdf, azimuth, r % n, out.mirrored, asymmetry[size_t(r % n)], row_options);
           if (!progress) continue;
           const std::lock_guard lock(telling);
           progress(double(++done) / rows);

@@ -18,11 +18,16 @@ namespace zonal {
 struct ShProjectionOptions {
   int bands = 0;        ///< 1..100 for every row; 0: each row keeps the bands that hold `share` of its energy
   float share = 0.95f;  ///< of the integral of F^2 (of F'^2 for F'), (0, 1)
-  int most_bands = 64;  ///< of a row when bands == 0
-  int azimuths = 0;     ///< rows around the normal; 0: 1 where the material is isotropic, else 90
+  int most_bands =
+      64;            ///< of a row when bands == 0; anisotropic materials have at most kAnisotropicBands then
+  int azimuths = 0;  ///< rows around the normal; 0: 1 where the material is isotropic, else 90
   std::string window = "none";  ///< none, hann, lanczos, hamming, auto: of every row
   float window_size = 0;        ///< bands; 0: the row's
+  int nodes = 0;  ///< about how many directions a row is evaluated at; 0: what its accuracy needs
 };
+
+/// Keeps both tables of 90 azimuths below 20 MB.
+inline constexpr int kAnisotropicBands = 10;
 
 /// One outgoing direction of one table.
 struct ShRow {
