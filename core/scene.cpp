@@ -124,13 +124,19 @@ bool Scene::occluded(const Surface& from, vec3 to) const {
 }
 
 uint32_t Scene::occluded8(const vec3* origins, uint32_t active, vec3 to) const {
+  const vec3 ends[8] = {to, to, to, to, to, to, to, to};
+  return occluded8(origins, active, ends);
+}
+
+uint32_t Scene::occluded8(const vec3* origins, uint32_t active, const vec3* to) const {
   alignas(32) int valid[8];
   RTCRay8 rays;
   for (int i = 0; i < 8; ++i) {
     const bool wanted = (active >> i) & 1u;
-    const vec3 origin = wanted ? origins[i] : to;
-    const vec3 direction = to - origin;
-    const float end = wanted ? shadow_end(origin, to) : -1;
+    const vec3 origin = wanted ? origins[i] : vec3(0), target = wanted ? to[i] : vec3(0);
+    const vec3 direction = target - origin;
+    const float end = wanted ? shadow_end(origin, target) : -1;
+    if (wanted && ray_recorder) [[unlikely]] ray_recorder->push_back({origin, 0, direction, end, true});
     valid[i] = end > 0 ? -1 : 0;
     rays.org_x[i] = origin.x, rays.org_y[i] = origin.y, rays.org_z[i] = origin.z;
     rays.dir_x[i] = direction.x, rays.dir_y[i] = direction.y, rays.dir_z[i] = direction.z;

@@ -107,6 +107,8 @@ class Scene {
   /// Up to 8 shadow rays at once, all towards `to`, from origins already moved off their surfaces (offset_origin).
   /// `active` bit i: ray i is wanted. Returns the bits of the rays that are blocked.
   uint32_t occluded8(const vec3* origins, uint32_t active, vec3 to) const;
+  /// The same with an end of its own for each ray.
+  uint32_t occluded8(const vec3* origins, uint32_t active, const vec3* to) const;
   /// Every hit along the ray, each triangle once, nearest first: for transport without occlusion.
   void intersect_all(vec3 origin, vec3 direction, float t_min, std::vector<Hit>* hits) const;
 

@@ -16,6 +16,10 @@ void ManyLightsParams::visit(ParamVisitor& v, int occlusions) {
             "lights of one pass; 0: all, or what keeps a pass below a tenth of a given time");
   v.choice("distribution", distribution, {"grid", "paths"},
            "grid over a reflective shadow map (spot, point, directional lights), or light paths");
+  v.integer("block_texels", block_texels, {1, 256}, "texels",
+            "side of the block of map texels, one ray each, whose flux one light of a grid holds");
+  v.choice("placement", placement, {"sampled", "center"},
+           "where in its block a light stands: drawn by flux, or in the middle, the same every pass");
   v.choice("direct", direct, {"sampled", "none"}, "who renders direct light");
   v.integer("direct_samples", direct_samples, {1, 1e6}, "samples",
             "pairs of light and BRDF rays a pixel and pass");
@@ -128,25 +132,54 @@ void ManyLights::shade_direct(const Tile& tile, vec3* radiance, Sampler* sampler
   }
 }
 
+namespace {
+
+/// A point of the light's sphere on the side of `from`, above the light's surface, uniform in solid angle
+/// about the centre; the centre's `target` where that point lies under the shaded point's own surface.
+vec3 sphere_target(vec3 center, float radius, vec3 normal, vec3 target, const Surface& from, uint32_t u,
+                   uint32_t v) {
+  const vec3 to = from.position - center;
+  const float d2 = glm::dot(to, to);
+  const Frame frame(d2 > 0 ? to / std::sqrt(d2) : normal);
+  vec3 s = frame.to_world(uniform_cone({unit_float(u), unit_float(v)}, 1.0f));
+  const float height = glm::dot(s, normal);
+  if (height < 0) s -= 2.0f * height * normal;
+  const vec3 point = target + radius * s;
+  return glm::dot(from.normal, point - from.position) > 0 ? point : target;
+}
+
+}  // namespace
+
 /// Zeroes what the lights' shadow rays find blocked, light by light in packets of 8 points.
 void ManyLights::remove_shadowed(const TilePoints& points, int first, int count, Contributions& c,
                                  TileStats& stats) const {
+  const bool sphere = shared_.occlusion == Occlusion::sphere;
   std::array<int, kTilePixels> lit;
-  std::array<vec3, 8> origins;
+  std::array<vec3, 8> origins, targets;
   for (int j = 0; j < count; ++j) {
+    const int l = first + j;
     int lit_count = 0;
     for (int k = 0; k < points.count; ++k) {
       const int i = c.at(j, k);
       if (c.r[i] != 0 || c.g[i] != 0 || c.b[i] != 0) lit[lit_count++] = k;
     }
-    const vec3 target = arrays_.target[first + j];
+    const vec3 target = arrays_.target[l];
     for (int begin = 0; begin < lit_count; begin += 8) {
       const int n = std::min(8, lit_count - begin);
       for (int m = 0; m < n; ++m) {
-        const Surface& s = points.surface(lit[begin + m]);
-        origins[m] = offset_origin(s, target - s.position);
+        const int k = lit[begin + m];
+        const Surface& s = points.surface(k);
+        targets[m] = target;
+        if (sphere) {
+          // Over the lights each point walks along a low-discrepancy sequence (Roberts 2018, R2).
+          const auto number = static_cast<uint32_t>(l);
+          targets[m] = sphere_target(arrays_.position(l), arrays_.radius[l], arrays_.normal(l), target, s,
+                                     hash32(points.seed[k], 5) + number * 0xc13fa9a9u,
+                                     hash32(points.seed[k], 6) + number * 0x91e10da6u);
+        }
+        origins[m] = offset_origin(s, targets[m] - s.position);
       }
-      const uint32_t blocked = scene_->occluded8(origins.data(), (1u << n) - 1u, target);
+      const uint32_t blocked = scene_->occluded8(origins.data(), (1u << n) - 1u, targets.data());
       for (int m = 0; m < n; ++m) {
         if (!(blocked >> m & 1u)) continue;
         const int i = c.at(j, lit[begin + m]);

@@ -7,6 +7,7 @@
 #include "integrators/path/path.h"
 #include "integrators/vpl/vpl.h"
 #include "integrators/vsgl/vsgl.h"
+#include "integrators/vsl/vsl.h"
 
 namespace zonal {
 namespace {
@@ -32,6 +33,8 @@ const std::array kTable = {
                   false, list_params<PathParams>, make<PathParams, PathIntegrator>},
     IntegratorRow{"vpl", "instant radiosity: virtual point lights", "direct and `bounces` bounces, `occlusion` as set",
                   false, list_params<VplParams>, make<VplParams, VplIntegrator>},
+    IntegratorRow{"vsl", "virtual spherical lights: no spots, some noise", "direct and `bounces` bounces, `occlusion` as set",
+                  false, list_params<VslParams>, make<VslParams, VslIntegrator>},
     IntegratorRow{"vsgl", "virtual spherical Gaussian lights, two for each block of the map",
                   "direct and `bounces` bounces, `occlusion` as set", false, list_params<VsglParams>,
                   make<VsglParams, VsglIntegrator>},

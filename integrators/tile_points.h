@@ -8,7 +8,10 @@
 /// order of the points is not that of the pixels: neighbours on the screen stay neighbours here, eight of
 /// them make a packet of shadow rays.
 
+#include <memory>
+
 #include "core/integrator.h"
+#include "integrators/bsdf_arrays.h"
 
 namespace zonal {
 
@@ -38,6 +41,15 @@ struct TilePoints {
   vec3 position(int k) const { return {x[k], y[k], z[k]}; }
   const Surface& surface(int k) const { return tile.surfaces[pixel[k]]; }
   const Bsdf& bsdf(int k) const { return tile.bsdfs[pixel[k]]; }
+
+ private:
+  void add(int i, uint32_t random);
+};
+
+/// The points' BRDFs as arrays, padding included: what vpl and vsl keep of a tile.
+struct TileBrdfs : TileState {
+  BsdfArrays brdfs;
+  explicit TileBrdfs(const TilePoints& points);
 };
 
 }  // namespace zonal

@@ -140,7 +140,7 @@ std::vector<float> virtual_light_radii(const VirtualLightSet& set, const RadiusP
   const size_t count = set.lights.size();
   std::vector<float> radii(count, 0.0f);
   if (params.rule == RadiusRule::metres) {
-    std::fill(radii.begin(), radii.end(), params.metres);
+    std::fill(radii.begin(), radii.end(), std::fmax(params.metres, kSmallest * scene_radius));
     return radii;
   }
 

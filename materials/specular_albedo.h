@@ -34,6 +34,11 @@ class SpecularAlbedo {
     /// E_avg: mean of E over the hemisphere weighted by the cosine, of the very interpolant that `at`
     /// returns.
     float average() const;
+    /// `at` of an isotropic table at kPoints cosines whose fourth roots are evenly spaced from 0 to 1, linear
+    /// between: for loops that look up many directions at one alpha.
+    static constexpr int kPoints = 97;
+    void tabulate(float* values) const;
+    bool operator==(const Row&) const = default;
 
    private:
     friend class SpecularAlbedo;
@@ -122,6 +127,12 @@ inline float SpecularAlbedo::Row::at(vec3 w) const {
   values += azimuth.index * kCosines;
   const float a = t.interpolate(values, cosine, blend_);
   return a + azimuth.blend * (t.interpolate(values + kCosines, cosine, blend_) - a);
+}
+
+inline void SpecularAlbedo::Row::tabulate(float* values) const {
+  static_assert(kPoints == kCosines);
+  const float* lower = &table_->values_[size_t(index_) * kCosines];
+  for (int i = 0; i < kCosines; ++i) values[i] = lower[i] + blend_ * (lower[i + kCosines] - lower[i]);
 }
 
 inline float SpecularAlbedo::Row::average() const {

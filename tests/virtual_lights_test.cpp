@@ -6,6 +6,7 @@
 
 #include <cstring>
 
+#include "lights/virtual_light_radius.h"
 #include "tests/light_support.h"
 
 namespace zonal {
@@ -252,6 +253,168 @@ TEST(virtual_lights, depend_on_seed_and_pass_and_not_on_threads) {
   }
 }
 
+/// A spot over the middle of a floor that its whole cone falls on.
+Scene spot_over_floor(vec3 axis = {0.2f, -1, 0.1f}) {
+  std::vector<std::unique_ptr<Light>> lights;
+  lights.push_back(spot({0.2f, 1, 0.1f}, axis, vec3(5)));
+  return scene_of({{{-6, 0, -6}, {0, 0, 12}, {12, 0, 0}}}, std::move(lights));
+}
+
+TEST(virtual_lights, of_a_map_hold_the_flux_of_their_light_in_every_single_pass) {
+  // Cells carry their integrated flux, so nothing is left to chance where nothing escapes.
+  const Scene scene = spot_over_floor();
+  const double power = scene.lights()[0]->power().y;
+  for (const int lights : {30, 400}) {
+    for (const int block : {1, 3}) {
+      for (const auto placement : {Options::sampled, Options::center}) {
+        const VirtualLightSet set = make_virtual_lights(
+            scene, {.lights = lights, .seed = 9, .block_texels = block, .placement = placement}, {});
+        EXPECT_NEAR(flux(set, 1), power, 1e-4 * power)
+            << lights << " lights, blocks of " << block << " placement " << placement;
+      }
+    }
+  }
+  // What they emit over all directions, by quadrature of (VL-1)'s flux: the floor's albedo times that.
+  const VirtualLightSet set = make_virtual_lights(scene, {.lights = 100}, {});
+  double emitted = 0;
+  constexpr int kSide = 40;
+  for (const VirtualLight& v : set.lights) {
+    const BsdfContext view = prepare(v.bsdf, v.frame.to_local(v.w_in), PathEnd::light);
+    for (int i = 0; i < kSide; ++i) {
+      for (int j = 0; j < kSide; ++j) {
+        const float z = (float(i) + 0.5f) / kSide, phi = 2 * kPi * (float(j) + 0.5f) / kSide;
+        const vec3 w(safe_sqrt(1 - z * z) * std::cos(phi), safe_sqrt(1 - z * z) * std::sin(phi), z);
+        emitted += double(v.power.y) * evaluate(v.bsdf, view, w).y * z * 2 * M_PI / (kSide * kSide);
+      }
+    }
+  }
+  EXPECT_NEAR(emitted, 0.5 * power, 1e-3 * power);
+}
+
+TEST(virtual_lights, of_a_block_hold_what_its_texels_hold) {
+  const Scene scene = scene_of(box(), lamps_in_the_box());
+  for (const auto placement : {Options::sampled, Options::center}) {
+    const VirtualLightSet set = make_virtual_lights(
+        scene, {.lights = 100, .bounces = 2, .block_texels = 4, .placement = placement, .keep_texels = true},
+        {});
+    size_t gridded = 0;
+    for (const VirtualLight& v : set.lights) {
+      if (v.grid == kNone) {
+        EXPECT_EQ(v.texel_count, 0u);
+        continue;
+      }
+      ++gridded;
+      ASSERT_LE(v.texel_count, 16u);
+      double sum = 0, area = 0;
+      bool stands_at_one = false;
+      for (uint32_t t = v.first_texel; t < v.first_texel + v.texel_count; ++t) {
+        const VirtualLight& texel = set.texels[t];
+        sum += texel.power.y, area += texel.footprint;
+        EXPECT_EQ(texel.grid, v.grid);
+        EXPECT_EQ(texel.cell, v.cell);
+        stands_at_one = stands_at_one || texel.position == v.position;
+      }
+      EXPECT_NEAR(v.power.y, sum, 1e-5 * sum);
+      EXPECT_NEAR(v.footprint, area, 1e-5 * area);
+      EXPECT_TRUE(stands_at_one);
+    }
+    EXPECT_GT(gridded, 50u);
+  }
+}
+
+TEST(virtual_lights, placed_at_centres_stay_where_they_are_from_pass_to_pass) {
+  const Scene scene = spot_over_floor();
+  Options options{.lights = 64, .block_texels = 3, .placement = Options::center};
+  const VirtualLightSet first = make_virtual_lights(scene, options, {});
+  options.pass = 5, options.seed = 77;
+  EXPECT_TRUE(same_bits(first, make_virtual_lights(scene, options, {})));
+}
+
+TEST(virtual_lights, know_their_neighbours_in_the_map) {
+  const Scene scene = spot_over_floor({0, -1, 0.001f});
+  const VirtualLightSet set = make_virtual_lights(scene, {.lights = 400}, {});
+  ASSERT_EQ(set.grids.size(), 1u);
+  const VirtualLightGrid& grid = set.grids[0];
+  EXPECT_EQ(grid.columns, set.columns);
+  EXPECT_TRUE(grid.spot);
+  EXPECT_NEAR(grid.fov, 2 * 0.9f, 1e-5);
+  // On a plane one metre below, cells are squares of this size: neighbours lie within two diagonals.
+  const float side = 2 * std::tan(0.9f) / float(grid.columns);
+  for (uint32_t i = 0; i < set.lights.size(); ++i) {
+    int count = 0;
+    for (const uint32_t n : set.neighbours(i)) {
+      if (n == kNone) continue;
+      ++count;
+      EXPECT_LT(glm::distance(set.lights[i].position, set.lights[n].position),
+                2 * std::sqrt(2.0f) * side * 1.01f);
+      const auto back = set.neighbours(n);
+      EXPECT_NE(std::find(back.begin(), back.end(), i), back.end());
+    }
+    EXPECT_GT(count, 0);
+    // The footprint is the light's patch of floor: (GRID-1)'s solid angle projected back onto the plane.
+    const vec3 p = set.lights[i].position - vec3(0.2f, 0, 0.1f);
+    if (glm::length(vec2(p.x, p.z)) + side < std::tan(0.3f))
+      EXPECT_NEAR(set.lights[i].footprint, side * side, 0.15f * side * side);
+  }
+}
+
+TEST(virtual_light_radius, of_each_rule_is_about_the_diagonal_spacing_on_an_even_map) {
+  // A far spot with a narrow cone on a plane across it: cells are equal squares of this size.
+  std::vector<std::unique_ptr<Light>> lights;
+  auto far = spot({0, 20, 0}, {0, -1, 0}, vec3(5));
+  far->cone = {0.1f, 0.1f};
+  lights.push_back(std::move(far));
+  const Scene scene = scene_of({{{-6, 0, -6}, {0, 0, 12}, {12, 0, 0}}}, std::move(lights));
+  const VirtualLightSet set =
+      make_virtual_lights(scene, {.lights = 800, .block_texels = 3, .placement = Options::center}, {});
+  const double spacing = 2 * 20 * std::tan(0.1) / set.columns;
+  const auto median = [&](RadiusRule rule, float factor = 1) {
+    auto r = virtual_light_radii(set, {.rule = rule, .factor = factor}, scene.bounds().radius);
+    std::nth_element(r.begin(), r.begin() + r.size() / 2, r.end());
+    return r[r.size() / 2];
+  };
+  const double diagonal = std::sqrt(2) * spacing;
+  EXPECT_NEAR(median(RadiusRule::field_of_view), diagonal, 0.02 * diagonal);
+  EXPECT_EQ(median(RadiusRule::automatic), median(RadiusRule::field_of_view));
+  // The tenth neighbour of a square lattice is 2 spacings away: 2 sqrt(2 pi/10) = 1.585 of them.
+  EXPECT_NEAR(median(RadiusRule::density), 1.585 * spacing, 0.02 * spacing);
+  // The mean of 4 sides and 4 diagonals, nearly equal depths: (1 + sqrt 2)/2.
+  EXPECT_NEAR(median(RadiusRule::neighbours), 0.5 * (1 + std::sqrt(2)) * spacing, 0.05 * spacing);
+  EXPECT_NEAR(median(RadiusRule::density, 1.5f), 1.5 * 1.585 * spacing, 0.03 * spacing);
+}
+
+TEST(virtual_light_radius, is_positive_where_lights_share_a_place_or_are_alone) {
+  VirtualLightSet set;
+  for (const auto rule :
+       {RadiusRule::automatic, RadiusRule::field_of_view, RadiusRule::density, RadiusRule::neighbours}) {
+    set.lights.clear();
+    EXPECT_TRUE(virtual_light_radii(set, {.rule = rule}, 2).empty());
+    set.lights.resize(1);
+    set.lights[0].primary_distance = 3;
+    EXPECT_FLOAT_EQ(virtual_light_radii(set, {.rule = rule}, 2)[0], 1.5f);
+    set.lights.resize(30);
+    for (const float r : virtual_light_radii(set, {.rule = rule}, 2)) EXPECT_FLOAT_EQ(r, 2e-6f);
+  }
+}
+
+TEST(virtual_light_radius, finds_the_same_nearest_distances_as_a_search_of_all) {
+  std::vector<vec3> points;
+  for (int i = 0; i < 700; ++i) {
+    vec3 p(random_pair(), random_pair().x);
+    if (i % 5 == 0) p.y = 0.25f;  // many on one plane
+    if (i % 50 == 0 && i) p = points[i / 2];
+    points.push_back(p);
+  }
+  const auto found = nearest_distances(points, 10);
+  for (size_t i = 0; i < points.size(); ++i) {
+    std::vector<float> all;
+    for (size_t j = 0; j < points.size(); ++j)
+      if (j != i) all.push_back(glm::distance(points[i], points[j]));
+    std::nth_element(all.begin(), all.begin() + 9, all.end());
+    EXPECT_FLOAT_EQ(found[i], all[9]) << i;
+  }
+}
+
 TEST(virtual_lights, are_none_and_say_why) {
   std::vector<std::unique_ptr<Light>> lights;
   lights.push_back(spot({0, 1, 0}, {0, 1, 0}, vec3(1)));
@@ -261,6 +424,12 @@ TEST(virtual_lights, are_none_and_say_why) {
   EXPECT_TRUE(missed.lights.empty());
   ASSERT_EQ(missed.warnings.size(), 1u);
   EXPECT_NE(missed.warnings[0].find("flashlight"), std::string::npos) << missed.warnings[0];
+  // A light without a name goes by its number.
+  std::vector<std::unique_ptr<Light>> nameless;
+  nameless.push_back(spot({0, 1, 0}, {0, 1, 0}, vec3(1)));
+  const VirtualLightSet again = make_virtual_lights(scene_of({floor}, std::move(nameless)), {}, {});
+  ASSERT_EQ(again.warnings.size(), 1u);
+  EXPECT_NE(again.warnings[0].find("spot light 0"), std::string::npos) << again.warnings[0];
 
   const VirtualLightSet dark = make_virtual_lights(scene_of({floor}, {}), {}, {});
   EXPECT_TRUE(dark.lights.empty());

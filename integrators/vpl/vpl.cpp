@@ -7,55 +7,89 @@ namespace zonal {
 
 namespace {
 
-/// What of a light reaches the points, before their BRDFs: (VPL-1).
+/// What of a light reaches the points, before their BRDFs.
 struct Transfer {
-  alignas(64) TilePoints::Floats geometry;    ///< cos cos / d^2 as used
-  alignas(64) TilePoints::Floats wx, wy, wz;  ///< unit, point to light, world
+  using Floats = TilePoints::Floats;
+  alignas(64) Floats geometry;    ///< (VPL-1): cos cos / d^2
+  alignas(64) Floats x, y, z;     ///< unit, point to light, the point's shading frame
+  alignas(64) Floats ex, ey, ez;  ///< unit, light to point, the light's shading frame
 };
 
-void transfer(const TilePoints& points, vec3 p, vec3 n, bool yuksel, float shortest, Transfer* out) {
-#pragma omp simd
+/// One light against all points. Returns whether any of them sees it.
+template <bool kYuksel>
+bool transfer(const TilePoints& points, vec3 p, vec3 n, const Frame& frame, float shortest, Transfer& out) {
+  float any = 0;
+#pragma omp simd reduction(+ : any)
   for (int k = 0; k < points.padded; ++k) {
     const vec3 to_light(p.x - points.x[k], p.y - points.y[k], p.z - points.z[k]);
     const float d2 = dot(to_light, to_light);
-    const float attenuation = yuksel ? vpl_yuksel(d2, shortest) : vpl_inverse_square(d2, shortest);
+    const float attenuation = kYuksel ? vpl_yuksel(d2, shortest) : vpl_inverse_square(d2, shortest);
     vec3 w;
     const float g = vpl_geometry(to_light, vec3(points.nx[k], points.ny[k], points.nz[k]), n, attenuation, w);
     // Light must arrive on the side of the true surface that the camera sees, whatever the shading normal
     // says.
     const bool faces = w.x * points.gx[k] + w.y * points.gy[k] + w.z * points.gz[k] > 0.0f;
-    out->geometry[k] = faces && d2 > 0.0f ? g : 0.0f;
-    out->wx[k] = w.x, out->wy[k] = w.y, out->wz[k] = w.z;
+    const float geometry = faces ? g : 0.0f;
+    out.geometry[k] = geometry;
+    any += geometry;
+    out.x[k] = w.x * points.tx[k] + w.y * points.ty[k] + w.z * points.tz[k];
+    out.y[k] = w.x * points.bx[k] + w.y * points.by[k] + w.z * points.bz[k];
+    out.z[k] = w.x * points.nx[k] + w.y * points.ny[k] + w.z * points.nz[k];
+    out.ex[k] = -dot(w, frame.x), out.ey[k] = -dot(w, frame.y), out.ez[k] = -dot(w, frame.z);
   }
+  return any > 0;
 }
+
+/// Radiance beyond which a product of two narrow lobes is cut off, so that sums stay finite.
+constexpr float kMost = 1e30f;
 
 }  // namespace
 
-void VplIntegrator::prepare(const Pass& pass, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) {
+void VplIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightArrays& arrays, const Stop&,
+                            PassStats&) {
   shortest_ = params_.clamp * pass.scene.bounds().radius;
+  const Lobes lobes = params_.emission == VplParams::Emission::brdf ? Lobes::all : Lobes::diffuse;
+  emitters_ = BsdfArrays(static_cast<int>(set.lights.size()));
+  for (int j = 0; j < emitters_.count(); ++j) emitters_.set(j, arrays.bsdf[j], arrays.view[j], lobes);
+  emitters_.finish();
+}
+
+std::unique_ptr<TileState> VplIntegrator::prepare_tile(const TilePoints& points) const {
+  return std::make_unique<TileBrdfs>(points);
 }
 
 void VplIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
   const bool yuksel = params_.attenuation == VplParams::Attenuation::yuksel;
-  const Lobes lobes = params_.emission == VplParams::Emission::brdf ? Lobes::all : Lobes::diffuse;
-  const LightArrays& lights = this->lights();
+  const BsdfArrays& receivers = static_cast<const TileBrdfs*>(points.state)->brdfs;
+  const int n = points.padded;
   Transfer t;
+  alignas(64) TilePoints::Floats er, eg, eb;
   for (int j = 0; j < count; ++j) {
     const int l = first + j;
-    transfer(points, lights.position(l), lights.normal(l), yuksel, shortest_, &t);
-    const Frame frame = lights.frame(l);
-    for (int k = 0; k < points.padded; ++k) {
-      vec3 sent(0);
-      if (t.geometry[k] > 0) {
-        const vec3 w(t.wx[k], t.wy[k], t.wz[k]);
-        // (VPL-4) flux, times both BRDFs, times the geometry. BRDFs are symmetric, so w_in serves as the
-        // light's view.
-        sent = lights.power(l) * evaluate(lights.bsdf[l], lights.view[l], frame.to_local(-w), lobes) *
-               evaluate(points.bsdf(k), points.view[k], points.surface(k).shading.to_local(w)) *
-               t.geometry[k];
+    float *r = &out.r[out.at(j, 0)], *g = &out.g[out.at(j, 0)], *b = &out.b[out.at(j, 0)];
+    const auto one = yuksel ? transfer<true> : transfer<false>;
+    if (!one(points, lights().position(l), lights().normal(l), lights().frame(l), shortest_, t)) {
+      for (int k = 0; k < n; ++k) r[k] = g[k] = b[k] = 0;
+      continue;
+    }
+    // (VPL-4) flux, times both BRDFs, times the geometry. BRDFs are symmetric, so w_in serves as the light's
+    // view.
+    receivers.evaluate(0, n, t.x.data(), t.y.data(), t.z.data(), r, g, b);
+    const vec3 power = lights().power(l);
+    vec3 flat;
+    if (emitters_.constant(l, &flat)) {
+      const vec3 flux = flat * power;
+      for (int k = 0; k < n; ++k) {
+        r[k] *= flux.x * t.geometry[k], g[k] *= flux.y * t.geometry[k], b[k] *= flux.z * t.geometry[k];
       }
-      const int i = out.at(j, k);
-      out.r[i] = sent.x, out.g[i] = sent.y, out.b[i] = sent.z;
+      continue;
+    }
+    emitters_.evaluate_one(l, n, t.ex.data(), t.ey.data(), t.ez.data(), er.data(), eg.data(), eb.data());
+    for (int k = 0; k < n; ++k) {
+      const float geometry = t.geometry[k];
+      r[k] = min(r[k] * geometry * (er[k] * power.x), kMost);
+      g[k] = min(g[k] * geometry * (eg[k] * power.y), kMost);
+      b[k] = min(b[k] * geometry * (eb[k] * power.z), kMost);
     }
   }
 }

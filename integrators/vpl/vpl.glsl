@@ -1,8 +1,8 @@
 // Gathering from virtual point lights: the part both compilers share. Equations are numbered in README.md.
 
-// (VPL-2) 1/d^2, no nearer than `shortest` metres.
+// (VPL-2) 1/d^2, no nearer than `shortest` metres; a light on the point itself stays finite.
 KERNEL float vpl_inverse_square(float d2, float shortest) {
-  return 1.0f / max(d2, shortest * shortest);
+  return 1.0f / max(max(d2, shortest * shortest), 1e-18f);
 }
 
 // (VPL-3) Yuksel 2020, "Point Light Attenuation Without Singularity": the irradiance on the axis of a disk of radius r
@@ -10,7 +10,7 @@ KERNEL float vpl_inverse_square(float d2, float shortest) {
 KERNEL float vpl_yuksel(float d2, float r) {
   float d = sqrt(d2);
   float s = sqrt(d2 + r * r);
-  return 2.0f / (s * (s + d));
+  return 2.0f / max(s * (s + d), 1e-18f);
 }
 
 // (VPL-1) cos_x cos_y / d^2 between a shaded point and a light, both cosines from below cut off at 0. `to_light` is not

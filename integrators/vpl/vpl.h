@@ -32,13 +32,15 @@ class VplIntegrator : public ManyLights {
 
  protected:
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
+  std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
   bool accounts() const override { return shortest_ > 0; }
   void account(const TilePoints&, int first, int count, const Contributions&, TileStats&) const override;
 
  private:
   VplParams params_;
-  float shortest_ = 0;  ///< metres: `clamp` times the scene's radius
+  BsdfArrays emitters_;  ///< the lights' BRDFs, seen from where their flux came from
+  float shortest_ = 0;   ///< metres: `clamp` times the scene's radius
 };
 
 }  // namespace zonal

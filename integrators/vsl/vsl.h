@@ -1,0 +1,50 @@
+#pragma once
+/// `vsl`: virtual spherical lights (Hasan, Krivanek, Walter and Bala 2009). A virtual light's flux is spread
+/// over a sphere, and both BRDFs are integrated over the cone it is seen in: no 1/d^2, no spikes, some noise.
+/// Equations, parameters and failures: README.md beside this file.
+
+#include "integrators/many_lights.h"
+#include "lights/virtual_light_radius.h"
+
+namespace zonal {
+
+struct VslParams : ManyLightsParams {
+  enum class Sampling { cone, brdf, mis };
+
+  int samples = 16;
+  Sampling sampling = Sampling::cone;
+  RadiusParams radius;
+  /// Emission and the light's cosine taken at the direction to its centre, as hvl does: for tests, in C++
+  /// alone.
+  bool frozen = false;
+
+  void visit(ParamVisitor& v) {
+    ManyLightsParams::visit(v, 3);
+    v.integer("samples", samples, {1, 4096}, "samples", "directions a point and light");
+    v.choice("sampling", sampling, {"cone", "brdf", "mis"},
+             "directions drawn from the light's cone, from the point's BRDF, or half of each by the balance "
+             "heuristic");
+    radius.visit(v);
+  }
+};
+
+class VslIntegrator : public ManyLights {
+ public:
+  explicit VslIntegrator(const VslParams& params);
+
+ protected:
+  void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
+  std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
+  void gather(const TilePoints&, int first, int count, Contributions&) const override;
+
+ private:
+  int cone_samples() const;
+  int brdf_samples() const { return params_.samples - cone_samples(); }
+
+  VslParams params_;
+  BsdfArrays emitters_;  ///< the lights' BRDFs, seen from where their flux came from
+  /// Directions of the cone before each pair's own turn and shift: a lattice over the unit square.
+  std::vector<float> lattice_u_, lattice_c_, lattice_s_;
+};
+
+}  // namespace zonal
