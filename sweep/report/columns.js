@@ -29,19 +29,21 @@ const Columns = (() => {
       text("parameters", "parameters", (row) => Format.parameters(row.item.varied)),
       ...(model.backends.length > 1 ? [text("backend", "backend", (row) => row.item.backend)] : []),
       ...(cells ? [{key: "seed", heading: "seed", value: (row) => row.cell.seed, show: (row) => String(row.cell.seed)}] : []),
+      ...(model.groups.some((group) => group.budget) ? [text("budget", "budget", (row) => row.item.budget)] : []),
       text("status", "status", status_text, status_badges),
       {key: "time", heading: "time", unit: "s", best: "low", hint: "begin_pass and radiance; not loading, scoring or output",
        value: (row) => (row.group ? row.group.time?.mean : row.cell.time)},
-      ...(cells ? [] : [{key: "time_interval", heading: "time, 95 %", unit: "s", hint: "95 % interval of the mean over seeds", ...interval((group) => group.time)}]),
+      ...(cells ? [] : [{key: "time_interval", heading: "time, 95\u00a0%", unit: "s", hint: "95 % interval of the mean over seeds", ...interval((group) => group.time)}]),
       metric_column(metric, key, score, true),
       ...(cells ? [] : [
-        {key: "interval", heading: `${Metrics.label(metric)}, 95 %`, unit, hint: "95 % interval of the mean over seeds", ...interval((group) => group.scores?.[key])},
+        {key: "interval", heading: `${Metrics.label(metric)}, 95\u00a0%`, unit, hint: "95 % interval of the mean over seeds", ...interval((group) => group.scores?.[key])},
         {key: "worst", heading: "worst seed", unit, best: metric.better === "higher" ? "high" : "low",
          value: (row) => row.group?.scores?.[key]?.worst},
         {key: "noise", heading: "noise, RMSE", unit: radiance, best: "low", hint: "RMS deviation from the mean over seeds", value: (row) => row.group?.noise},
         {key: "bias_part", heading: "bias, RMSE", unit: radiance, best: "low", hint: "RMSE of the mean over seeds", value: (row) => row.group?.bias},
       ]),
       ...model.metrics.filter((other) => other !== metric).map((other) => metric_column(other, Metrics.key(other), score, false)),
+      ...(cells && model.cells.some((cell) => cell.repeat) ? [text("repeat", "to repeat it", (row) => row.cell.repeat)] : []),
     ];
   }
 
@@ -58,7 +60,8 @@ const Columns = (() => {
     const missed = cell ?? group.members.find((c) => c.status === "not_reached");
     if (cell?.status === "failed") list.push({kind: "bad", words: `seed ${cell.seed} failed: ${cell.reason || "no reason was recorded"}`});
     if (group?.failed) list.push({kind: "bad", words: `${group.failed} of ${group.members.length} failed`});
-    if (missed?.status === "not_reached") list.push({kind: "warn", words: `not reached${aim(missed)}`});
+    const how_many = group && group.not_reached < group.members.length ? `${group.not_reached} of ${group.members.length} ` : "";
+    if (missed?.status === "not_reached") list.push({kind: "warn", words: `${how_many}not reached${aim(missed)}`});
     if (item.reference_limited) list.push({kind: "hollow", words: "reference-limited"});
     return list.length ? list : [{kind: "ok", words: "done"}];
   }
@@ -68,10 +71,10 @@ const Columns = (() => {
 
   /// What an equal-time or equal-error search wanted and got.
   function aim(cell) {
-    const {kind, parameter, target, reached} = cell.search ?? {};
-    if (target === undefined || target === null) return cell.reason ? ` (${cell.reason})` : "";
+    const {kind, target, reached} = cell.search ?? {};
+    if (target === undefined || target === null) return cell.reason ? `: ${cell.reason}` : "";
     const unit = kind === "equal_time" ? " s" : "";
-    return ` (wanted ${Format.number(target)}${unit}, came to ${Format.number(reached)}${unit}${parameter ? ` by ${parameter}` : ""})`;
+    return `: ${Format.number(reached)}${unit} of ${Format.plain(target)}${unit}`;
   }
 
   return {columns, rows};

@@ -11,6 +11,10 @@ const Model = (() => {
     model.methods.forEach((method, index) => (method.index = index));
     model.backends = [...new Set(model.cells.map((cell) => cell.backend))];
 
+    const items = [...model.cells, ...model.groups];
+    model.told_apart_by = new Map([...new Set(items.map((item) => item.method))]
+      .map((method) => [method, differing(items.filter((item) => item.method === method))]));
+
     model.cell = by_id(model.cells);
     for (const cell of model.cells) cell.name = name_of(model, cell);
     for (const group of model.groups) {
@@ -25,12 +29,21 @@ const Model = (() => {
 
   const by_id = (list) => new Map(list.map((item) => [item.id, item]));
 
-  /// "hvl, 5 bands · lights 400": without what all share.
+  /// "hvl, 5 bands · lights 400": without what all groups of the method share, for that is what its label is for.
   function name_of(model, item) {
     const method = model.method.get(item.method)?.label ?? item.method;
     const backend = model.backends.length > 1 ? `, ${item.backend}` : "";
-    const varied = Format.parameters(item.varied);
+    const told = Object.entries(item.varied ?? {}).filter(([name]) => model.told_apart_by.get(item.method).has(name));
+    const varied = Format.parameters(Object.fromEntries(told));
     return `${method}${backend}${varied && ` · ${varied}`}`;
+  }
+
+  /// The parameters in which a method's groups and cells differ.
+  function differing(items) {
+    const values = new Map();
+    for (const {varied} of items)
+      for (const [name, value] of Object.entries(varied ?? {})) values.set(name, (values.get(name) ?? new Set()).add(JSON.stringify(value)));
+    return new Set([...values].filter(([, of_name]) => of_name.size > 1).map(([name]) => name));
   }
 
   /// The parameter a method's line runs along: the number with the most values.

@@ -54,6 +54,11 @@ class Picker {
     this.on_pick();
   }
 
+  /// What is shown, with its seed where there is a choice.
+  title() {
+    return this.choice.pictures.length > 1 ? `${this.picture.name}, seed ${this.picture.seed}` : this.picture.name;
+  }
+
   /// The n-th method (from 1), or the reference (0). Where a method has several groups: the one shown last; pressed
   /// again, the next one; a first time, the one nearest in time to what is shown, for that is the fair comparison.
   choose_number(n) {

@@ -243,7 +243,7 @@ const Viewer = (() => {
       element.hidden = side === undefined;
       if (!picker) return;
       element.className = `label ${i === 0 ? "left" : stacked ? "lower" : state.mode === "side" ? "half" : "right"}`;
-      element.textContent = text ?? `${split || state.mode === "flip" ? `${"AB"[side]}: ` : ""}${picker.picture.name}`;
+      element.textContent = text ?? `${split || state.mode === "flip" ? `${"AB"[side]}: ` : ""}${picker.title()}`;
     });
     parts.canvas.setAttribute("aria-label", `${shown.map((side) => [a, b][side].picture.name).join(" and ")}, ${state.shows}`);
   }

@@ -53,14 +53,14 @@ export function make_results() {
   const cells = [], groups = [], next = random(7);
   kScenes.forEach((scene, s) => kMethods.forEach((method) => (method.lights ?? method.passes).forEach((count, step) => {
     const varied = method.lights ? {lights: count} : {passes: count};
-    const group = {id: groups.length, scene: `scene-${s}`, method: method.id, backend: "cpu", varied, cells: [], failed: 0, reference_limited: false};
+    const group = {id: groups.length, scene: `scene-${s}`, method: method.id, backend: "cpu", varied, budget: method.lights ? "1 pass" : `${count} passes`, cells: [], failed: 0, reference_limited: false};
     const error = method.error * (1 + 0.4 * s) * (count / 4) ** method.power, seconds = 0.002 * method.speed * count * (1 + s);
     for (const seed of kSeeds) {
       const id = `${scene.slice(0, 2)}${s}-${method.id}-${count}-${seed}`;
       // hvl's seeds lie close together: bars smaller than its markers.
       const wobble = 1 + (next() - 0.5) * (method.id === "hvl-5" ? 0.01 : 0.3), time = seconds * (1 + (next() - 0.5) * 0.04);
       const scores = scores_of(error, wobble);
-      cells.push({id, scene: `scene-${s}`, method: method.id, backend: "cpu", seed, group: group.id, status: "done", reason: "",
+      cells.push({id, scene: `scene-${s}`, method: method.id, backend: "cpu", seed, group: group.id, budget: group.budget, repeat: `--set lights=${count} --seed ${seed}`, status: "done", reason: "",
         parameters: {...varied, bounces: 1}, varied, passes: method.passes ? count : 1,
         seconds: {load: 0.2, begin_pass: time / 10, radiance: time * 0.9, output: 0.1}, runs: [time * 0.99, time, time * 1.02], time,
         search: null, scores, reference: `reference-${s}`, reference_limited: false,
