@@ -56,6 +56,9 @@ struct PassStats {
 class Integrator {
  public:
   virtual ~Integrator() = default;
+  /// Runs once before the first pass and off the clock: what hangs on the scene alone and counts as loading it (materials
+  /// projected on spherical harmonics). May be parallel inside. Returns early when `stop` says so.
+  virtual void load(const Scene&, const Stop&, PassStats&) {}
   /// Runs before each pass, timed apart; may be parallel inside. Returns early when `stop` says so.
   virtual void begin_pass(const Pass&, const Stop&, PassStats&) {}
   /// Radiance towards the camera of each of the tile's pixels, W m^-2 sr^-1, written (not added) for every pixel, the

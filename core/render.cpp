@@ -131,6 +131,7 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
   const TileGrid grid(film.width(), film.height());
   std::vector<TileStats> tile_stats(grid.count());
   ProgressGate gate(on_progress);
+  arena.execute([&] { integrator.load(scene, Stop(options.stop, Clock::time_point::max()), report.pass); });
   double spent = 0;  // on the clock: begin_pass and radiance, nothing else
 
   for (int index = 0; budget.passes <= 0 || index < budget.passes; ++index) {

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "integrators/debug/debug.h"
+#include "integrators/hvl/hvl.h"
 #include "integrators/path/path.h"
 #include "integrators/vpl/vpl.h"
 #include "integrators/vsgl/vsgl.h"
@@ -35,6 +36,9 @@ const std::array kTable = {
                   false, list_params<VplParams>, make<VplParams, VplIntegrator>},
     IntegratorRow{"vsl", "virtual spherical lights: no spots, some noise", "direct and `bounces` bounces, `occlusion` as set",
                   false, list_params<VslParams>, make<VslParams, VslIntegrator>},
+    IntegratorRow{"hvl", "harmonic virtual lights: spheres and BRDFs on spherical harmonics",
+                  "direct and `bounces` bounces, `occlusion` as set", false, list_params<HvlParams>,
+                  make<HvlParams, HvlIntegrator>},
     IntegratorRow{"vsgl", "virtual spherical Gaussian lights, two for each block of the map",
                   "direct and `bounces` bounces, `occlusion` as set", false, list_params<VsglParams>,
                   make<VsglParams, VsglIntegrator>},

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/error.h"
 #include "sh/clamped_cosine.h"
@@ -73,15 +74,19 @@ void HvlIntegrator::window(int count, float* weights) const {
     weights[l] = float(sh::window_weight(static_cast<sh::Window>(params_.window), l, size));
 }
 
-/// Once a render: every material of the scene on spherical harmonics, unless nothing asks for it.
-void HvlIntegrator::project_materials(const Scene& scene, const Stop& stop, PassStats&) {
-  const bool receiver = params_.product == HvlParams::Product::sh,
-             light = params_.emission == HvlParams::Emission::sh;
+void HvlIntegrator::load(const Scene& scene, const Stop& stop, PassStats& stats) {
+  loaded_ = &scene;
+  if (params_.product == HvlParams::Product::zonal) refuse_lobeless(scene);
+  const bool receiver = params_.product == HvlParams::Product::sh;
+  const bool light = params_.emission == HvlParams::Emission::sh;
   if (!receiver && !light) return;
   ShMaterialsOptions options;
   const bool automatic = (receiver && params_.bands == kAuto) || (light && params_.emission_bands == kAuto);
   if (!automatic) options.bands = std::max(receiver ? params_.bands : 1, light ? params_.emission_bands : 1);
+  const auto start = std::chrono::steady_clock::now();
   materials_ = ShMaterials(scene.materials(), options, stop);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  stats.numbers["material_projection_seconds"] = spent.count();
 }
 
 void HvlIntegrator::refuse_lobeless(const Scene& scene) const {
@@ -156,10 +161,7 @@ void HvlIntegrator::prepare_emission(const VirtualLightSet& set, const Stop& sto
 
 void HvlIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightArrays& arrays,
                             const Stop& stop, PassStats& stats) {
-  if (pass.index == 0) {
-    if (params_.product == HvlParams::Product::zonal) refuse_lobeless(pass.scene);
-    project_materials(pass.scene, stop, stats);
-  }
+  if (loaded_ != &pass.scene) load(pass.scene, stop, stats);
   const int count = static_cast<int>(set.lights.size());
   records_.resize(set.lights.size());
   const std::vector<float> radii = virtual_light_radii(set, params_.radius, pass.scene.bounds().radius);

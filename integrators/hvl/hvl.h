@@ -31,6 +31,9 @@ class HvlIntegrator : public ManyLights {
   /// Throws SceneError where two settings do not go together; `where` names the settings.
   explicit HvlIntegrator(const HvlParams& params, const std::string& where = "integrator \"hvl\"");
 
+  /// Projects the scene's materials. Throws SceneError where `product: zonal` meets one without a symmetric
+  /// lobe.
+  void load(const Scene&, const Stop&, PassStats&) override;
   /// Position, radius and power of every light of the pass.
   const std::vector<hvl::Light>& records() const { return records_; }
   /// What light `j` reflects of a unit flux towards w (unit, world), 1/sr: (HVL-2), or the BRDF.
@@ -47,7 +50,6 @@ class HvlIntegrator : public ManyLights {
     vec3 x, y, z;
     const float* coefficients;
   };
-  void project_materials(const Scene&, const Stop&, PassStats&);
   void refuse_lobeless(const Scene&) const;
   void prepare_emission(const VirtualLightSet&, const Stop&);
   template <class F>
@@ -59,6 +61,7 @@ class HvlIntegrator : public ManyLights {
 
   HvlParams params_;
   std::string where_;
+  const Scene* loaded_ = nullptr;
   ShMaterials materials_;
   std::vector<hvl::Light> records_;
   std::vector<Emitter> emitters_;
