@@ -253,11 +253,13 @@ int Fields::choice(std::string_view key, std::span<const std::string> names) {
 int Fields::choice(std::string_view key, int otherwise, std::span<const std::string> names) {
   const json* found = find(key);
   if (!found) return otherwise;
-  if (!found->is_string()) wrong(key, *found, "one of " + listed(names));
-  const std::string& text = found->get_ref<const std::string&>();
+  // A name that is a number, such as a year, may be written as one.
+  const bool number = found->is_number_integer();
+  if (!found->is_string() && !number) wrong(key, *found, "one of " + listed(names));
+  const std::string text = number ? found->dump() : found->get<std::string>();
   const auto it = std::find(names.begin(), names.end(), text);
   if (it != names.end()) return static_cast<int>(it - names.begin());
-  const std::string nearest = nearest_name(text, names);
+  const std::string nearest = number ? "" : nearest_name(text, names);
   wrong(key, *found,
         "one of " + listed(names) + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"));
 }
