@@ -312,6 +312,17 @@ TEST(Vsgl, lights_on_the_shaded_point_and_behind_it_stay_sound) {
   }
 }
 
+TEST(Vsgl, takes_its_generation_as_a_word_or_a_number) {
+  for (const char* settings : {R"({"generation": 2015})", R"({"generation": "2015"})"}) {
+    nlohmann::json values;
+    find_integrator("vsgl", "").make(nlohmann::json::parse(settings), "x", &values);
+    EXPECT_EQ(values["generation"], "2015");
+  }
+  EXPECT_THROW(
+      find_integrator("vsgl", "").make(nlohmann::json::parse(R"({"generation": 2016})"), "x", nullptr),
+      SceneError);
+}
+
 TEST(Vsgl, refuses_paths_and_measured_materials_by_name) {
   try {
     find_integrator("vsgl", "").make(nlohmann::json::parse(R"({"distribution": "paths"})"), "x", nullptr);
