@@ -97,11 +97,11 @@ constexpr double kWeights[kIntegrands] = {0.2, 1, 0.05};
 struct Cell {
   Part part;
   double t0, t1, phi0, phi1;
-  std::array<Direction, kNodes> w;
-  std::array<double, kNodes> weight;
-  std::array<vec3, kNodes> f;
-  double total[kIntegrands];
-  double tail_t[kIntegrands], tail_phi[kIntegrands];
+  std::array<Direction, kNodes> w{};
+  std::array<double, kNodes> weight{};
+  std::array<vec3, kNodes> f{};
+  double total[kIntegrands]{};
+  double tail_t[kIntegrands]{}, tail_phi[kIntegrands]{};
 };
 
 class Integrator {
