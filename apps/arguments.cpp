@@ -23,6 +23,29 @@ void apply_settings(const std::vector<std::string>& entries, nlohmann::json* set
   }
 }
 
+nlohmann::json material_replacements(const std::vector<std::string>& entries) {
+  nlohmann::json replacements = nlohmann::json::object();
+  for (const std::string& entry : entries) {
+    const size_t equals = entry.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == entry.size())
+      throw SceneError(fmt::format(
+          "--material: found \"{}\", expected name=entry, for example --material bronze=rgl/paper_white",
+          entry));
+    const std::string value = entry.substr(equals + 1);
+    const nlohmann::json parsed = nlohmann::json::parse(value, nullptr, false);
+    replacements[entry.substr(0, equals)] = parsed.is_object() ? parsed : nlohmann::json(value);
+  }
+  return replacements;
+}
+
+void add_material_option(CLI::App& command, std::vector<std::string>* entries) {
+  command
+      .add_option("--material", *entries,
+                  "name=entry: the scene's material of that name becomes the material database's entry (or a "
+                  "JSON object)")
+      ->allow_extra_args(false);
+}
+
 void add_pixels_option(CLI::App& command, RenderOptions::Pixels* pixels) {
   using Pixels = RenderOptions::Pixels;
   const std::map<std::string, Pixels> names{

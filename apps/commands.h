@@ -27,9 +27,15 @@ inline constexpr int kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 
 void add_render(CLI::App& app, int* exit_code);
 void add_compare(CLI::App& app, int* exit_code);
 void add_list(CLI::App& app, int* exit_code);
+void add_material(CLI::App& app, int* exit_code);
 void add_reference(CLI::App& app, int* exit_code);
 void add_sweep(CLI::App& app, int* exit_code);
 void add_verify(CLI::App& app, int* exit_code);
+
+/// Below `zonal material`.
+void add_material_bands(CLI::App& material, int* exit_code);
+void add_material_merl(CLI::App& material, int* exit_code);
+void add_material_show(CLI::App& material, int* exit_code);
 
 /// Set by the first Ctrl-C (or SIGTERM) after `catch_interrupts`; the second ends the program at once.
 std::atomic<bool>& stop_asked();
@@ -38,6 +44,10 @@ void catch_interrupts();
 /// `--set key=value` entries laid over `settings`: value is JSON where it parses as such (400, 0.5, true),
 /// else text. Throws SceneError when there is no '='.
 void apply_settings(const std::vector<std::string>& entries, nlohmann::json* settings);
+
+/// `--material name=entry` entries as LoadOptions::materials: the entry is a name of the database, or JSON.
+nlohmann::json material_replacements(const std::vector<std::string>& entries);
+void add_material_option(CLI::App& command, std::vector<std::string>* entries);
 
 /// `--pixels automatic|center|jitter`.
 void add_pixels_option(CLI::App& command, RenderOptions::Pixels* pixels);

@@ -11,6 +11,7 @@
 #include "integrators/table.h"
 #include "lights/light.h"
 #include "materials/material.h"
+#include "materials/material_database.h"
 
 namespace zonal {
 namespace {
@@ -68,14 +69,31 @@ Json metric_list() {
   return list;
 }
 
+Json database_list(const std::string& folder) {
+  Json list = Json::array();
+  for (const DatabaseEntry& e : MaterialDatabase::open(folder).entries()) {
+    list.push_back({{"name", e.name},
+                    {"source", e.source},
+                    {"format", e.format},
+                    {"bands", e.bands},
+                    {"albedo", {e.albedo.x, e.albedo.y, e.albedo.z}},
+                    {"bytes", e.bytes},
+                    {"isotropic", e.azimuths == 1},
+                    {"mirrored", e.mirrored},
+                    {"notes", e.notes}});
+  }
+  return list;
+}
+
 /// The topics asked for; an empty topic means all.
-Json collect(const std::string& topic) {
+Json collect(const std::string& topic, const std::string& database) {
   const auto wanted = [&](const char* name) { return topic.empty() || topic == name; };
   Json all = Json::object();
   if (wanted("integrators")) all["integrators"] = integrators();
   if (wanted("lights")) all["lights"] = names_and_summaries(light_kinds());
   if (wanted("materials"))
     all["materials"] = names_and_summaries(material_kinds()), all["metals"] = metal_list();
+  if (wanted("materials") && !database.empty()) all["database"] = database_list(database);
   if (wanted("metrics")) all["metrics"] = metric_list();
   return all;
 }
@@ -111,6 +129,12 @@ void print_all(const Json& all) {
         print_integrator(row);
       } else if (topic == "metrics") {
         print_metric(row);
+      } else if (topic == "database") {
+        const Json& a = row["albedo"];
+        fmt::print("  {:<28}{:>4} bands {:>9.1f} kB   albedo {:.3f} {:.3f} {:.3f}   {} {}\n",
+                   text(row, "name"), row["bands"].get<int>(), row["bytes"].get<double>() * 1e-3,
+                   a[0].get<double>(), a[1].get<double>(), a[2].get<double>(), text(row, "format"),
+                   text(row, "source"));
       } else if (topic == "metals") {
         const Json &eta = row["eta"], &k = row["k"];
         fmt::print("  {:<20}eta {:.3f} {:.3f} {:.3f}   k {:.3f} {:.3f} {:.3f}\n", text(row, "name"),
@@ -127,12 +151,14 @@ void print_all(const Json& all) {
 
 void add_list(CLI::App& app, int* exit_code) {
   struct Options {
-    std::string topic;
+    std::string topic, database;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("list", "every integrator, light, material and metric there is");
   command->add_option("topic", options->topic, "integrators, lights, materials or metrics; default: all");
+  command->add_option("--database", options->database,
+                      "material database to list too; default: ZONAL_MATERIALS");
   command->add_flag("--json", options->json, "print JSON");
   command->callback([=] {
     if (!options->topic.empty() &&
@@ -140,7 +166,11 @@ void add_list(CLI::App& app, int* exit_code) {
       throw SceneError(
           fmt::format("list: unknown topic \"{}\"{}", options->topic, did_you_mean(options->topic, kTopics)));
     }
-    const Json all = collect(options->topic);
+    const char* environment = std::getenv("ZONAL_MATERIALS");
+    const std::string database = !options->database.empty() ? options->database
+                                 : environment              ? environment
+                                                            : "";
+    const Json all = collect(options->topic, database);
     if (options->json) {
       fmt::print("{}\n", all.dump(2));
     } else {

@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   add_render(app, &exit_code);
   add_compare(app, &exit_code);
   add_list(app, &exit_code);
+  add_material(app, &exit_code);
   add_reference(app, &exit_code);
   add_sweep(app, &exit_code);
   add_verify(app, &exit_code);

@@ -18,7 +18,7 @@ constexpr int kDefaultPasses = 256;
 
 struct Options {
   ReferenceRequest request;
-  std::vector<std::string> settings;
+  std::vector<std::string> settings, materials;
   std::string size, output;
   int threads = 0;
   bool quiet = false;
@@ -30,6 +30,7 @@ int reference_command(const Options& options) {
     throw SceneError("--passes and --time: expected only one of them");
   if (request.passes == 0 && request.seconds == 0) request.passes = kDefaultPasses;
   apply_settings(options.settings, &request.settings);
+  request.materials = material_replacements(options.materials);
   if (!options.size.empty()) parse_size(options.size, &request.width, &request.height);
   const std::string output =
       options.output.empty() ? std::filesystem::path(request.scene_file).stem().string() + "_reference.exr"
@@ -44,7 +45,10 @@ int reference_command(const Options& options) {
     return kDone;
   }
 
-  const LoadOptions load{.frame = request.frame, .width = request.width, .height = request.height};
+  const LoadOptions load{.frame = request.frame,
+                         .width = request.width,
+                         .height = request.height,
+                         .materials = request.materials};
   const Scene scene = load_scene(request.scene_file, load);
   catch_interrupts();
   ProgressPrinter progress(fmt::format("reference of {}, {}", scene.name(), request.integrator),
@@ -88,6 +92,7 @@ void add_reference(CLI::App& app, int* exit_code) {
   command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels");
   command->add_option("--threads", options->threads, "threads; 0: all")->check(CLI::Range(0, 4096));
   command->add_option("--seed", options->request.seed, "random seed");
+  add_material_option(*command, &options->materials);
   add_pixels_option(*command, &options->request.pixels);
   command->add_option("--frame", options->request.frame, "frame of a scene with keyframes");
   command->add_option("-o,--output", options->output,

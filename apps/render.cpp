@@ -19,7 +19,7 @@ namespace {
 
 struct Options {
   std::string scene, integrator, size, stats, snapshots, backend = "cpu";
-  std::vector<std::string> outputs, settings;
+  std::vector<std::string> outputs, settings, materials;
   int passes = 0, threads = 0, frame = 0;
   double seconds = 0;
   uint64_t seed = 0;
@@ -63,7 +63,7 @@ int render_command(const Options& options) {
   if (options.backend != "cpu")
     throw SceneError(fmt::format("--backend: found \"{}\", expected \"cpu\" (this build has no GPU backend)", options.backend));
   if (options.passes > 0 && options.seconds > 0) throw SceneError("--passes and --time: expected only one of them");
-  LoadOptions load{.frame = options.frame};
+  LoadOptions load{.frame = options.frame, .materials = material_replacements(options.materials)};
   if (!options.size.empty()) parse_size(options.size, &load.width, &load.height);
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty()) outputs = {std::filesystem::path(options.scene).stem().string() + ".exr"};
@@ -163,6 +163,7 @@ void add_render(CLI::App& app, int* exit_code) {
   command->add_option("--threads", options->threads, "threads; 0: all")->check(CLI::Range(0, 4096));
   command->add_option("--seed", options->seed, "random seed");
   command->add_option("--frame", options->frame, "frame of a scene with keyframes");
+  add_material_option(*command, &options->materials);
   command->add_option("--backend", options->backend, "cpu");
   command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again; none: no picture")
       ->allow_extra_args(false);

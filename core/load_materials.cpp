@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -141,9 +142,33 @@ std::unique_ptr<Material> metallic_roughness(Loading& loading, Fields& fields) {
   return m;
 }
 
+void add_entry(Loading& loading, const DatabaseEntry& entry, const std::string& where,
+               MeasuredMaterial* material) {
+  if (!std::filesystem::exists(entry.source))
+    throw SceneError(
+        fmt::format("{}: {}: its measured file {} is gone, expected it where it was projected from", where,
+                    in_quotes(entry.name), entry.source));
+  material->sh_file = entry.sh_file;
+  loading.measured.add(entry.source, where, material);
+}
+
 std::unique_ptr<Material> measured(Loading& loading, Fields& fields) {
   auto m = std::make_unique<MeasuredMaterial>();
-  loading.measured.add(loading.resolve(fields.text("file"), fields.at("file")), fields.at("file"), m.get());
+  if (!fields.has("entry")) {
+    loading.measured.add(loading.resolve(fields.text("file"), fields.at("file")), fields.at("file"), m.get());
+    return m;
+  }
+  const std::string name = fields.text("entry"), where = fields.at("entry");
+  const MaterialDatabase* database = loading.database();
+  if (!database)
+    fields.fail("entry", "found " + in_quotes(name) +
+                             ", expected a \"material_database\" in the scene or ZONAL_MATERIALS in "
+                             "the environment that names one");
+  const DatabaseEntry* entry = database->find(name);
+  if (!entry)
+    fields.fail("entry", "found " + in_quotes(name) + ", expected a material of the database" +
+                             did_you_mean(name, database->names()));
+  add_entry(loading, *entry, where, m.get());
   return m;
 }
 
@@ -215,10 +240,51 @@ void MeasuredSlots::load_all() {
 
 uint32_t Loading::find_material(const std::string& name) {
   const auto found = std::find(material_names.begin(), material_names.end(), name);
-  if (found == material_names.end()) return kNone;
+  if (found == material_names.end()) {
+    if (const auto used = from_database.find(name); used != from_database.end()) return used->second;
+    const DatabaseEntry* entry = database() ? database()->find(name) : nullptr;
+    if (!entry) return kNone;
+    auto material = std::make_unique<MeasuredMaterial>();
+    material->name = name;
+    add_entry(*this, *entry, database_where, material.get());
+    parts.materials.push_back(std::move(material));
+    return from_database[name] = static_cast<uint32_t>(parts.materials.size() - 1);
+  }
   const auto index = found - material_names.begin();
   material_used[static_cast<size_t>(index)] = true;
   return static_cast<uint32_t>(index);
+}
+
+const MaterialDatabase* Loading::database() {
+  if (database_folder.empty()) return nullptr;
+  try {
+    if (!opened_database) opened_database = MaterialDatabase::open(database_folder);
+  } catch (const SceneError& error) {
+    throw SceneError(database_where + ": " + error.what());
+  }
+  return &*opened_database;
+}
+
+void replace_materials(json& root, const json& replacements, const std::string& file) {
+  if (replacements.empty()) return;
+  std::vector<std::string> names;
+  if (root.is_object() && root.contains("materials") && root["materials"].is_array())
+    for (json& material : root["materials"]) {
+      const std::string name = material.is_object() ? material.value("name", "") : "";
+      names.push_back(name);
+      if (!replacements.contains(name)) continue;
+      const json& by = replacements[name];
+      if (by.is_object()) {
+        material = by;
+        material["name"] = name;
+      } else {
+        material = {{"name", name}, {"type", "measured"}, {"entry", by}};
+      }
+    }
+  for (const auto& [name, by] : replacements.items())
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw SceneError(fmt::format("{}: --material: found {}, expected the name of a material of the scene{}",
+                                   file, in_quotes(name), did_you_mean(name, names)));
 }
 
 uint32_t Loading::grey() {

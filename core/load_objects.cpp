@@ -30,6 +30,13 @@ std::optional<uint32_t> read_material_name(Loading& loading, Fields& fields) {
   if (!fields.find("material")) return std::nullopt;
   const std::string name = fields.text("material");
   if (const uint32_t index = loading.find_material(name); index != kNone) return index;
+  if (const MaterialDatabase* database = loading.database()) {
+    std::vector<std::string> names = loading.material_names;
+    for (const std::string& entry : database->names()) names.push_back(entry);
+    fields.fail("material",
+                fmt::format("found {}, expected the name of a material of the scene or its database{}",
+                            in_quotes(name), did_you_mean(name, names)));
+  }
   const std::string known = loading.material_names.empty() ? " (\"materials\" defines none)"
                                                            : did_you_mean(name, loading.material_names);
   fields.fail("material", fmt::format("found {}, expected the name of a material{}", in_quotes(name), known));

@@ -14,6 +14,7 @@
 #include "core/scene.h"
 #include "core/scene_loader.h"
 #include "core/transform.h"
+#include "materials/material_database.h"
 #include "materials/material.h"
 
 namespace zonal {
@@ -95,13 +96,21 @@ struct Loading {
   std::vector<PendingImport> imports;
   std::vector<ImportedCameras> imported_cameras;
 
+  /// The projected materials of "material_database" or of the environment variable ZONAL_MATERIALS; opened when a
+  /// material is looked for there first.
+  const MaterialDatabase* database();
+  std::string database_folder, database_where;  ///< folder "" = none
+
   std::vector<std::string> material_names;  ///< of the scene file; index = index into parts.materials
   std::vector<bool> material_used;
   uint32_t default_material = kNone, black_material = kNone;
+  std::optional<MaterialDatabase> opened_database;
+  std::map<std::string, uint32_t> from_database;  ///< entries in use: index into parts.materials
 
   /// The file a key names: relative to the scene, ${ZONAL_DATA} expanded, known to exist. Throws SceneError.
   std::string resolve(const std::string& text, const std::string& where) const;
-  /// Index of the material an object names, which counts as used from then on; kNone when there is none.
+  /// Index of the material an object names, of the scene or of the database, which counts as used from then on; kNone
+  /// when there is none.
   uint32_t find_material(const std::string& name);
   /// Index of a material, made on first use: the grey everything has that names none, and the black of bare
   /// lights.
@@ -119,6 +128,8 @@ vec3 read_direction(Fields& fields, std::string_view key);
 void apply_keyframes(nlohmann::json& root, int frame, const std::string& file);
 
 void read_materials(Loading& loading, const nlohmann::json& list, const std::string& where);
+/// Puts other definitions in the place of named materials: {"bronze": "rgl/paper_white"} or {"bronze": {"type": ...}}.
+void replace_materials(nlohmann::json& root, const nlohmann::json& replacements, const std::string& file);
 void read_objects(Loading& loading, const nlohmann::json& list, const std::string& where);
 void read_lights(Loading& loading, const nlohmann::json& list, const std::string& where);
 void import_meshes(Loading& loading);

@@ -82,6 +82,7 @@ std::string reference_key(const ReferenceRequest& request) {
   hash.add(request.settings.dump());
   hash.add(fmt::format("passes {} seconds {} size {}x{} frame {} seed {}", request.passes, request.seconds,
                        request.width, request.height, request.frame, request.seed));
+  if (!request.materials.empty()) hash.add(request.materials.dump());
   hash.add(request.pixels == RenderOptions::Pixels::center ? "pixel centres" : "jittered pixels");
   return hash.text();
 }

@@ -32,6 +32,7 @@ struct ReferenceRequest {
       0;  ///< alternatively: of both halves together; the second half takes as many passes as the first
   int width = 0, height = 0, frame = 0;
   uint64_t seed = 0;
+  nlohmann::json materials = nlohmann::json::object();  ///< replacements, as in LoadOptions
   /// Score one-pass pictures against a reference of pixel centres: otherwise edges are measured as errors.
   RenderOptions::Pixels pixels = RenderOptions::Pixels::jitter;
 };

@@ -37,6 +37,18 @@ void read_settings(Fields& fields, SceneSettings& settings) {
   settings.passes = fields.integer("passes", 0, {1, 1e9});
 }
 
+/// Where projected materials are: the scene's word, else the environment's.
+void find_database(Loading& loading, const std::string& text, const std::string& where) {
+  const char* environment = std::getenv("ZONAL_MATERIALS");
+  if (!text.empty()) {
+    loading.database_folder =
+        std::filesystem::path(loading.resolve(text + "/index.json", where)).parent_path().string();
+    loading.database_where = where;
+  } else if (environment && *environment) {
+    loading.database_folder = environment, loading.database_where = loading.file + ": ZONAL_MATERIALS";
+  }
+}
+
 /// What is no mistake but may surprise.
 void add_notes(Loading& loading) {
   for (size_t i = 0; i < loading.material_names.size(); ++i)
@@ -52,6 +64,7 @@ Scene parse(const std::string& text, const std::string& file, const LoadOptions&
             SceneSettings& settings) {
   json root = parse_json(text, file);
   apply_keyframes(root, options.frame, file);
+  replace_materials(root, options.materials, file);
 
   Fields fields(root, file);
   Loading loading;
@@ -68,7 +81,9 @@ Scene parse(const std::string& text, const std::string& file, const LoadOptions&
   read_settings(fields, settings);
   const json &materials = list("materials"), &objects = list("objects"), &lights = list("lights");
   fields.find("keyframes");
+  const std::string database = fields.text("material_database", "");
   fields.finish();
+  find_database(loading, database, fields.at("material_database"));
 
   // What the file itself says comes first: its mistakes are found before any large file is read.
   read_materials(loading, materials, fields.at("materials"));

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "core/scene.h"
 
@@ -14,6 +14,8 @@ namespace zonal {
 struct LoadOptions {
   int frame = 0;               ///< for files with keyframes
   int width = 0, height = 0;   ///< > 0: replaces the file's resolution
+  /// Other definitions of materials, by name: an entry of the material database, or an object as in "materials".
+  nlohmann::json materials = nlohmann::json::object();
 };
 
 /// What the file says beside the scene itself.

@@ -92,10 +92,10 @@ std::string cell_key(const SweepPlan& plan, const Cell& cell, const json& settin
                           .height = scene.height,
                           .frame = scene.frame,
                           .seed = cell.seed,
+                          .materials = scene.materials,
                           .pixels = plan.pixels}));
   hash.add(fmt::format("{} {} {} {} {} {}", ZONAL_VERSION, cell.backend, budget.text(),
                        static_cast<int>(plan.pixels), plan.threads, plan.runs));
-  hash.add(scene.materials.dump());
   return hash.text();
 }
 

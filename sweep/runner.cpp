@@ -407,6 +407,7 @@ std::vector<ReferenceRequest> cell_references(const SweepPlan& plan, const Cell&
                            .height = scene.height,
                            .frame = scene.frame,
                            .seed = 1000};
+  request.materials = scene.materials;
   if (plan.reference_seconds > 0) request.passes = 0;
   // A reference's rays start where the picture's do, so that edges are not measured as errors.
   const bool one_pass = (budget.kind == CellBudget::passes && budget.value == 1) ||

@@ -8,25 +8,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <glm/gtc/packing.hpp>
 #include <random>
 
 #include "core/atomic_file.h"
-#include "core/glsl.h"
 #include "materials/sh_projector.h"
 #include "materials/shmat_format.h"
-
-namespace zonal::gpu {
-// The buffer a shader would read.
-static const uint32_t* words = nullptr;
-using glm::uintBitsToFloat;
-using glm::unpackHalf2x16;
-static float atan(float y, float x) {
-  return std::atan2(y, x);
-}
-#define SHMAT_WORD(i) words[i]
-#include "materials/sh_material.glsl"
-}  // namespace zonal::gpu
+#include "tests/gpu_shmat.h"
 
 namespace zonal {
 namespace {
