@@ -35,26 +35,20 @@ struct HvlTile : TileState {
   hvl::Receivers receivers;
 };
 
-/// Emission by the light's BRDF itself, lane by lane.
+/// Emission by the light's BRDF itself.
 struct EmitBrdf {
   const LightArrays& lights;
+  const BsdfArrays& brdfs;
   int first;
 
   void operator()(int i, const hvl::V& x, const hvl::V& y, const hvl::V& z, hvl::V* out) const {
     const int j = first + i;
-    const Bsdf& bsdf = lights.bsdf[j];
-    const hvl::V zero = {};
-    if (bsdf.kind == BsdfKind::lambert) {
-      const hvl::V up = -(lights.nx[j] * x + lights.ny[j] * y + lights.nz[j] * z);
-      const hvl::V lit = up > 0.0f ? zero + kInvPi : zero;
-      for (int c = 0; c < 3; ++c) out[c] = bsdf.diffuse[c] * lit;
-      return;
-    }
-    const Frame frame = lights.frame(j);
-    for (int k = 0; k < hvl::kLanes; ++k) {
-      const vec3 f = evaluate(bsdf, lights.view[j], frame.to_local(-vec3(x[k], y[k], z[k])));
-      out[0][k] = f.x, out[1][k] = f.y, out[2][k] = f.z;
-    }
+    alignas(64) float w[3][hvl::kLanes], f[3][hvl::kLanes];
+    hvl::store(w[0], -(lights.tx[j] * x + lights.ty[j] * y + lights.tz[j] * z));
+    hvl::store(w[1], -(lights.bx[j] * x + lights.by[j] * y + lights.bz[j] * z));
+    hvl::store(w[2], -(lights.nx[j] * x + lights.ny[j] * y + lights.nz[j] * z));
+    brdfs.evaluate_one(j, hvl::kLanes, w[0], w[1], w[2], f[0], f[1], f[2]);
+    for (int c = 0; c < 3; ++c) hvl::load(f[c], out[c]);
   }
 };
 
@@ -76,7 +70,14 @@ void HvlIntegrator::window(int count, float* weights) const {
 
 void HvlIntegrator::load(const Scene& scene, const Stop& stop, PassStats& stats) {
   loaded_ = &scene;
-  if (params_.product == HvlParams::Product::zonal) refuse_lobeless(scene);
+  if (params_.product == HvlParams::Product::zonal) {
+    refuse_lobeless(scene);
+    // The first lobe of its kind makes a table of them: a tenth of a second that belongs here.
+    for (const auto& material : scene.materials()) {
+      const Bsdf bsdf = material->at(vec2(0.5f));
+      zonal_brdf(bsdf, zonal::prepare(bsdf, vec3(0, 0, 1)), 1);
+    }
+  }
   const bool receiver = params_.product == HvlParams::Product::sh;
   const bool light = params_.emission == HvlParams::Emission::sh;
   if (!receiver && !light) return;
@@ -170,7 +171,13 @@ void HvlIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightA
     arrays.radius[j] = radii[j];
     records_[j] = {light.position, light.normal, arrays.radius[j], light.power};
   }
-  if (params_.emission == HvlParams::Emission::sh) prepare_emission(set, stop);
+  if (params_.emission == HvlParams::Emission::sh) {
+    prepare_emission(set, stop);
+    return;
+  }
+  brdfs_ = BsdfArrays(count);
+  for (int j = 0; j < count; ++j) brdfs_.set(j, arrays.bsdf[j], arrays.view[j]);
+  brdfs_.finish();
 }
 
 void HvlIntegrator::receive_sh(const TilePoints& points, hvl::Receivers& r) const {
@@ -253,7 +260,7 @@ std::unique_ptr<TileState> HvlIntegrator::prepare_tile(const TilePoints& points)
 /// Calls f with the function that `hvl::gather` emits by, for lights from `first` on.
 template <class F>
 void HvlIntegrator::with_emission(int first, F&& f) const {
-  if (params_.emission == HvlParams::Emission::brdf) return f(EmitBrdf{lights(), first});
+  if (params_.emission == HvlParams::Emission::brdf) return f(EmitBrdf{lights(), brdfs_, first});
   const Emitter* emitters = emitters_.data() + first;
   const auto by_sh = [&](auto bands, auto mirrored) {
     f([emitters, count = emission_bands_](int j, const hvl::V& x, const hvl::V& y, const hvl::V& z,

@@ -3,6 +3,7 @@
 /// point fills the cap the sphere subtends, and meets the point's BRDF on spherical harmonics. Equations,
 /// parameters and failures: README.md beside this file.
 
+#include "integrators/bsdf_arrays.h"
 #include "integrators/hvl/hvl_kernels.h"
 #include "integrators/many_lights.h"
 #include "lights/virtual_light_radius.h"
@@ -64,6 +65,7 @@ class HvlIntegrator : public ManyLights {
   const Scene* loaded_ = nullptr;
   ShMaterials materials_;
   std::vector<hvl::Light> records_;
+  BsdfArrays brdfs_;  ///< emission brdf: of the lights
   std::vector<Emitter> emitters_;
   std::vector<float> emission_;
   int emission_bands_ = 1;
