@@ -3,14 +3,14 @@
 // pictures share centre and zoom, so what is under the pointer in one is under it in the other.
 
 class CanvasView {
-  static kMostZoom = 96;      // CSS px a pixel
-  static kNumbersFrom = 52;   // CSS px a pixel from which its values are written into it
-  static kNarrow = 620;       // CSS px: side by side stands one above the other below this width
+  static kMostZoom = 96; // CSS px a pixel
+  static kNumbersFrom = 52; // CSS px a pixel from which its values are written into it
+  static kNarrow = 620; // CSS px: side by side stands one above the other below this width
 
   /// on_cursor({x, y} or null): the pixel under the pointer; on_move(): zoom, centre or split have changed.
   constructor(canvas, {on_cursor, on_move}) {
     Object.assign(this, {canvas, on_cursor, on_move, layout: "one", layers: [], size: null, zoom: null, split: 0.5});
-    this.center = {x: 0, y: 0};  // of the view, in pixels of the picture
+    this.center = {x: 0, y: 0}; // of the view, in pixels of the picture
     this.pointers = new Map();
     this.listen();
   }
@@ -32,11 +32,12 @@ class CanvasView {
   }
 
   panes() {
-    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    const width = this.canvas.clientWidth,
+      height = this.canvas.clientHeight;
     if (this.layout !== "side") return [{left: 0, top: 0, width, height}];
     if (width < CanvasView.kNarrow)
-      return [0, 1].map((i) => ({left: 0, top: i * (height + 4) / 2, width, height: (height - 4) / 2}));
-    return [0, 1].map((i) => ({left: i * (width + 4) / 2, top: 0, width: (width - 4) / 2, height}));
+      return [0, 1].map((i) => ({left: 0, top: (i * (height + 4)) / 2, width, height: (height - 4) / 2}));
+    return [0, 1].map((i) => ({left: (i * (width + 4)) / 2, top: 0, width: (width - 4) / 2, height}));
   }
 
   fit_zoom() {
@@ -101,23 +102,32 @@ class CanvasView {
   listen() {
     const {canvas} = this;
     const place = (event) => ({x: event.offsetX, y: event.offsetY});
-    let last_scroll = 0;  // a page being scrolled past the canvas goes on scrolling
-    window.addEventListener("wheel", (event) => {
-      if (event.target !== canvas) last_scroll = event.timeStamp;
-    }, {passive: true});
-    canvas.addEventListener("wheel", (event) => {
-      if (event.timeStamp - last_scroll < 250 && !event.ctrlKey) return void (last_scroll = event.timeStamp);
-      if (event.deltaY > 0 && this.zoom === null && !event.ctrlKey) return;
-      event.preventDefault();
-      const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : 1);
-      this.zoom_to(this.scale() * 2 ** (-pixels / 200), event.offsetX, event.offsetY);
-    }, {passive: false});
+    let last_scroll = 0; // a page being scrolled past the canvas goes on scrolling
+    window.addEventListener(
+      "wheel",
+      (event) => {
+        if (event.target !== canvas) last_scroll = event.timeStamp;
+      },
+      {passive: true},
+    );
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        if (event.timeStamp - last_scroll < 250 && !event.ctrlKey) return void (last_scroll = event.timeStamp);
+        if (event.deltaY > 0 && this.zoom === null && !event.ctrlKey) return;
+        event.preventDefault();
+        const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : 1);
+        this.zoom_to(this.scale() * 2 ** (-pixels / 200), event.offsetX, event.offsetY);
+      },
+      {passive: false},
+    );
     canvas.addEventListener("dblclick", () => this.moved(() => this.fit()));
 
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
       const reach = event.pointerType === "touch" ? 24 : 8;
-      this.dragging_split = this.layout === "split" && Math.abs(event.offsetX - this.split * canvas.clientWidth) < reach;
+      this.dragging_split =
+        this.layout === "split" && Math.abs(event.offsetX - this.split * canvas.clientWidth) < reach;
       this.pointers.set(event.pointerId, place(event));
     });
     canvas.addEventListener("pointermove", (event) => {
@@ -157,25 +167,34 @@ class CanvasView {
   }
 
   draw() {
-    const {canvas} = this, dots = window.devicePixelRatio || 1;
-    const width = Math.round(canvas.clientWidth * dots), height = Math.round(canvas.clientHeight * dots);
+    const {canvas} = this,
+      dots = window.devicePixelRatio || 1;
+    const width = Math.round(canvas.clientWidth * dots),
+      height = Math.round(canvas.clientHeight * dots);
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
     const context = canvas.getContext("2d");
     context.setTransform(dots, 0, 0, dots, 0, 0);
     context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
-    const panes = this.panes(), bar = this.split * canvas.clientWidth;
+    const panes = this.panes(),
+      bar = this.split * canvas.clientWidth;
     this.layers.forEach((layer, i) => {
       const pane = panes[Math.min(i, panes.length - 1)];
-      const clip = this.layout !== "split" ? pane
-        : i === 0 ? {...pane, width: bar} : {...pane, left: bar, width: pane.width - bar};
+      const clip =
+        this.layout !== "split"
+          ? pane
+          : i === 0
+            ? {...pane, width: bar}
+            : {...pane, left: bar, width: pane.width - bar};
       if (layer?.picture) this.draw_layer(context, layer, pane, clip);
     });
     if (this.layout === "split") this.draw_bar(context, bar);
   }
 
   draw_layer(context, layer, pane, clip) {
-    const scale = this.scale(), {width, height} = this.size;
-    const left = pane.left + pane.width / 2 - this.center.x * scale, top = pane.top + pane.height / 2 - this.center.y * scale;
+    const scale = this.scale(),
+      {width, height} = this.size;
+    const left = pane.left + pane.width / 2 - this.center.x * scale,
+      top = pane.top + pane.height / 2 - this.center.y * scale;
     context.save();
     context.beginPath();
     context.rect(clip.left, clip.top, clip.width, clip.height);
@@ -190,7 +209,8 @@ class CanvasView {
 
   /// Each visible pixel's values, in dark letters with a bright rim: legible on any colour.
   draw_numbers(context, layer, left, top, clip) {
-    const scale = this.scale(), line = scale / 5;
+    const scale = this.scale(),
+      line = scale / 5;
     context.font = `${Math.min(13, scale / 5.2)}px ui-monospace, monospace`;
     context.textAlign = "center";
     context.lineWidth = 2.5;
@@ -198,7 +218,11 @@ class CanvasView {
     context.fillStyle = "#000";
     const first = (edge, start) => Math.max(0, Math.floor((edge - start) / scale));
     for (let y = first(clip.top, top); y < Math.min(this.size.height, (clip.top + clip.height - top) / scale); ++y) {
-      for (let x = first(clip.left, left); x < Math.min(this.size.width, (clip.left + clip.width - left) / scale); ++x) {
+      for (
+        let x = first(clip.left, left);
+        x < Math.min(this.size.width, (clip.left + clip.width - left) / scale);
+        ++x
+      ) {
         layer.numbers(x, y).forEach((text, i, all) => {
           const at = [left + (x + 0.5) * scale, top + (y + 0.5) * scale + (i - (all.length - 1) / 2 + 0.3) * line];
           context.strokeText(text, ...at);

@@ -10,10 +10,14 @@ const Format = (() => {
     if (value === 0) return "0";
     const size = Math.abs(value);
     // Close to 1 it is the distance from it that tells scores like SSIM apart: 0.99987.
-    if (size > 0.99 && size < 1) return value.toFixed(Math.min(9, digits - 2 - Math.floor(Math.log10(1 - size) + 1e-9))).replace("-", "−");
-    const text = size < 1e-4 || size >= 1e6 ? value.toExponential(digits - 1).replace("e+", "e")
-      : size >= 1000 ? String(Math.round(value))
-      : value.toPrecision(digits);
+    if (size > 0.99 && size < 1)
+      return value.toFixed(Math.min(9, digits - 2 - Math.floor(Math.log10(1 - size) + 1e-9))).replace("-", "−");
+    const text =
+      size < 1e-4 || size >= 1e6
+        ? value.toExponential(digits - 1).replace("e+", "e")
+        : size >= 1000
+          ? String(Math.round(value))
+          : value.toPrecision(digits);
     return text.replaceAll("-", "−");
   }
 
@@ -21,7 +25,8 @@ const Format = (() => {
   function interval(bounds) {
     const {mean, low, high} = bounds ?? {};
     if (low === null || low === undefined || high === null || high === undefined) return "–";
-    const up = high - mean, down = mean - low;
+    const up = high - mean,
+      down = mean - low;
     if (Math.abs(up - down) <= 0.05 * (up + down)) return `± ${number((up + down) / 2, 2)}`;
     return `${number(low)} … ${number(high)}`;
   }
@@ -34,11 +39,14 @@ const Format = (() => {
 
   /// {lights: 400, bounces: 1} -> "lights 400, bounces 1"
   function parameters(values) {
-    return Object.entries(values || {}).map(([name, value]) => `${name.replaceAll("_", " ")} ${plain(value)}`).join(", ");
+    return Object.entries(values || {})
+      .map(([name, value]) => `${name.replaceAll("_", " ")} ${plain(value)}`)
+      .join(", ");
   }
 
   function plain(value) {
-    if (typeof value === "number") return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
+    if (typeof value === "number")
+      return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(6)));
     return typeof value === "string" ? value : JSON.stringify(value);
   }
 

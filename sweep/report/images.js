@@ -4,8 +4,8 @@
 // are let go.
 
 const Images = (() => {
-  const limit = {bytes: 256e6, least: 4};  // packed pixels kept, and how many pictures are in any case: A and B with theirs
-  const kept = new Map();    // file -> image, in the order of use
+  const limit = {bytes: 256e6, least: 4}; // packed pixels kept, and how many pictures are in any case: A and B with theirs
+  const kept = new Map(); // file -> image, in the order of use
   const loading = new Map(); // file -> promise
 
   /// {width, height, exposure, packed: Uint32Array of RGB9E5, nan: Set of pixel indices}; rejects with a sentence.
@@ -16,7 +16,11 @@ const Images = (() => {
       kept.set(file, image);
       return Promise.resolve(image);
     }
-    if (!loading.has(file)) loading.set(file, start(file).finally(() => loading.delete(file)));
+    if (!loading.has(file))
+      loading.set(
+        file,
+        start(file).finally(() => loading.delete(file)),
+      );
     return loading.get(file);
   }
 
@@ -27,7 +31,10 @@ const Images = (() => {
       const script = h("script", {src: file, "data-file": file});
       script.onerror = () => reject(new Error(`${file} is missing or cannot be read`));
       // The script has called zonal_image by now, if it holds what it should.
-      script.onload = () => (kept.has(file) ? resolve(kept.get(file)) : reject(new Error(problems.get(file) ?? `${file} holds no picture`)));
+      script.onload = () =>
+        kept.has(file)
+          ? resolve(kept.get(file))
+          : reject(new Error(problems.get(file) ?? `${file} holds no picture`));
       document.head.append(script);
       script.addEventListener("load", () => script.remove());
       script.addEventListener("error", () => script.remove());
@@ -44,7 +51,13 @@ const Images = (() => {
       problems.set(file, `${file} is cut off: ${bytes.length} bytes of ${4 * width * height}`);
       return;
     }
-    kept.set(file, {width, height, exposure: exposure ?? 1, packed: new Uint32Array(bytes.buffer), nan: new Set(nan ?? [])});
+    kept.set(file, {
+      width,
+      height,
+      exposure: exposure ?? 1,
+      packed: new Uint32Array(bytes.buffer),
+      nan: new Set(nan ?? []),
+    });
     let sum = 0;
     for (const image of kept.values()) sum += image.packed.byteLength;
     for (const [oldest, image] of kept) {
@@ -55,7 +68,8 @@ const Images = (() => {
   };
 
   function decode_base64(text) {
-    const characters = atob(text), bytes = new Uint8Array(characters.length);
+    const characters = atob(text),
+      bytes = new Uint8Array(characters.length);
     for (let i = 0; i < bytes.length; ++i) bytes[i] = characters.charCodeAt(i);
     return bytes;
   }
@@ -65,7 +79,8 @@ const Images = (() => {
 
   /// Linear radiance of pixel `i` into `rgb`.
   function unpack(packed, i, rgb) {
-    const bits = packed[i], scale = kScales[bits >>> 27];
+    const bits = packed[i],
+      scale = kScales[bits >>> 27];
     rgb[0] = (bits & 511) * scale;
     rgb[1] = ((bits >>> 9) & 511) * scale;
     rgb[2] = ((bits >>> 18) & 511) * scale;

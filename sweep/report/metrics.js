@@ -3,8 +3,17 @@
 // of which more is better turn round: 1 − SSIM on a log axis, PSNR, logarithmic already, on a reversed one.
 
 const Metrics = (() => {
-  const kNames = {rmse: "RMSE", mae: "MAE", relmse: "relMSE", relmse_trimmed: "relMSE, trimmed", smape: "SMAPE",
-                  psnr: "PSNR", ssim: "SSIM", flip: "FLIP", nan: "NaN pixels"};
+  const kNames = {
+    rmse: "RMSE",
+    mae: "MAE",
+    relmse: "relMSE",
+    relmse_trimmed: "relMSE, trimmed",
+    smape: "SMAPE",
+    psnr: "PSNR",
+    ssim: "SSIM",
+    flip: "FLIP",
+    nan: "NaN pixels",
+  };
 
   /// A score's key in `scores`; the name, unless the results tell two metrics of one name apart.
   const key = (metric) => metric.key ?? metric.name;
@@ -25,9 +34,19 @@ const Metrics = (() => {
     if (metric.unit === "dB")
       return {label: heading(metric), kind: "linear", reverse: true, value: finite, better: (a, b) => a > b};
     if (metric.better === "higher")
-      return {label: `1 − ${label(metric)}`, kind: "log", value: (score) => map(score, (v) => 1 - v), better: smaller};
+      return {
+        label: `1 − ${label(metric)}`,
+        kind: "log",
+        value: (score) => map(score, (v) => 1 - v),
+        better: smaller,
+      };
     if (metric.name === "bias")
-      return {label: with_unit("|bias|", metric.unit), kind: "log", value: (score) => map(score, Math.abs), better: smaller};
+      return {
+        label: with_unit("|bias|", metric.unit),
+        kind: "log",
+        value: (score) => map(score, Math.abs),
+        better: smaller,
+      };
     return {label: heading(metric), kind: "log", value: finite, better: smaller};
   }
 

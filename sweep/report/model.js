@@ -4,7 +4,8 @@
 const Model = (() => {
   function prepare(results) {
     const model = {...results};
-    for (const list of ["metrics", "scenes", "references", "methods", "cells", "groups", "drift"]) model[list] = results[list] ?? [];
+    for (const list of ["metrics", "scenes", "references", "methods", "cells", "groups", "drift"])
+      model[list] = results[list] ?? [];
     model.scene = by_id(model.scenes);
     model.method = by_id(model.methods);
     model.reference = by_id(model.references);
@@ -12,8 +13,12 @@ const Model = (() => {
     model.backends = [...new Set(model.cells.map((cell) => cell.backend))];
 
     const items = [...model.cells, ...model.groups];
-    model.told_apart_by = new Map([...new Set(items.map((item) => item.method))]
-      .map((method) => [method, differing(items.filter((item) => item.method === method))]));
+    model.told_apart_by = new Map(
+      [...new Set(items.map((item) => item.method))].map((method) => [
+        method,
+        differing(items.filter((item) => item.method === method)),
+      ]),
+    );
 
     model.cell = by_id(model.cells);
     for (const cell of model.cells) cell.name = name_of(model, cell);
@@ -42,7 +47,8 @@ const Model = (() => {
   function differing(items) {
     const values = new Map();
     for (const {varied} of items)
-      for (const [name, value] of Object.entries(varied ?? {})) values.set(name, (values.get(name) ?? new Set()).add(JSON.stringify(value)));
+      for (const [name, value] of Object.entries(varied ?? {}))
+        values.set(name, (values.get(name) ?? new Set()).add(JSON.stringify(value)));
     return new Set([...values].filter(([, of_name]) => of_name.size > 1).map(([name]) => name));
   }
 
@@ -61,7 +67,10 @@ const Model = (() => {
   function line_of(model, group) {
     const along = primary(model, group.method);
     const others = Object.entries(group.varied ?? {}).filter(([name]) => name !== along);
-    return {id: JSON.stringify([group.scene, group.method, group.backend, others]), place: group.varied?.[along] ?? 0};
+    return {
+      id: JSON.stringify([group.scene, group.method, group.backend, others]),
+      place: group.varied?.[along] ?? 0,
+    };
   }
 
   /// The picture that stands for a group: its first seed that has one.
@@ -82,8 +91,11 @@ const Model = (() => {
     return curves[0]
       .map(({passes}) => curves.map((curve) => curve.find((p) => p.passes === passes)))
       .filter((points) => points.every((p) => Number.isFinite(p?.scores?.[key])))
-      .map((points) => ({passes: points[0].passes, seconds: mean(points.map((p) => p.seconds)),
-                         score: mean(points.map((p) => p.scores[key]))}));
+      .map((points) => ({
+        passes: points[0].passes,
+        seconds: mean(points.map((p) => p.seconds)),
+        score: mean(points.map((p) => p.scores[key])),
+      }));
   }
 
   return {mean_curve, picture_of, prepare, references_of};

@@ -5,9 +5,9 @@ window.zonal_results = (results) => {
   const model = Model.prepare(results);
   const page = {
     model,
-    scene: model.scenes.length > 4 ? model.scenes[0].id : null,  // null: all of them
+    scene: model.scenes.length > 4 ? model.scenes[0].id : null, // null: all of them
     metric: model.metrics[0],
-    hidden: new Set(),  // ids of methods the legend has switched off
+    hidden: new Set(), // ids of methods the legend has switched off
     scenes: () => model.scenes.filter((scene) => page.scene === null || scene.id === page.scene),
     show_image: (cell, item) => Viewer.show(cell, item),
     redraw: () => [Chart, Stability].forEach((part) => part.draw(page)),
@@ -40,7 +40,9 @@ function introduce(model) {
   document.getElementById("description").textContent = sweep?.description ?? "";
   const having = (status) => cells.filter((cell) => cell.status === status).length;
   const facts = [
-    `${Format.count(model.methods.length, "method")}, ${Format.count(model.scenes.length, "scene")}, ${Format.count(cells.length, "cell")}`,
+    Format.count(model.methods.length, "method"),
+    Format.count(model.scenes.length, "scene"),
+    Format.count(cells.length, "cell"),
     having("failed") ? `${having("failed")} failed` : "none failed",
     having("not_reached") ? `${having("not_reached")} missed their budget` : null,
     [model.machine?.cpu, model.machine?.gpu].filter(Boolean).join(", "),
@@ -53,7 +55,10 @@ function introduce(model) {
 /// The bar that follows the reader down the page: scene and metric hold for charts, table and stability.
 function controls(page) {
   const {model} = page;
-  const scenes = [{value: null, label: "All scenes"}, ...model.scenes.map((scene) => ({value: scene.id, label: scene.name}))];
+  const scenes = [
+    {value: null, label: "All scenes"},
+    ...model.scenes.map((scene) => ({value: scene.id, label: scene.name})),
+  ];
   const group = segments("Scene", scenes, page.scene, (scene) => {
     page.scene = scene;
     if (scene) Viewer.show_scene(scene);
@@ -73,5 +78,6 @@ function controls(page) {
 
 window.addEventListener("load", () => {
   const problem = document.getElementById("problem");
-  if (document.querySelector("main").hidden) problem.textContent = "data.js, which holds the results, is missing beside this page or cannot be read.";
+  if (document.querySelector("main").hidden)
+    problem.textContent = "data.js, which holds the results, is missing beside this page or cannot be read.";
 });

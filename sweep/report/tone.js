@@ -4,8 +4,19 @@
 
 const Tone = (() => {
   // Ten stops of matplotlib's "inferno" (van der Walt and Smith 2015): lightness rises evenly, also for colour-blind eyes.
-  const kInferno = ["#000004", "#1b0c42", "#4b0c6b", "#781c6d", "#a52c60", "#cf4446", "#ed6925", "#fb9a06", "#f7d03c", "#fcffa4"];
-  const kNan = [0, 255, 0];  // a colour neither scale has
+  const kInferno = [
+    "#000004",
+    "#1b0c42",
+    "#4b0c6b",
+    "#781c6d",
+    "#a52c60",
+    "#cf4446",
+    "#ed6925",
+    "#fb9a06",
+    "#f7d03c",
+    "#fcffa4",
+  ];
+  const kNan = [0, 255, 0]; // a colour neither scale has
 
   // sRGB encoding (IEC 61966-2-1) of [0, 1] to bytes, by table: fine enough that the steep dark end misses no byte.
   const kSteps = 16384;
@@ -16,8 +27,10 @@ const Tone = (() => {
 
   function paint(image, color_of) {
     const canvas = h("canvas", {width: image.width, height: image.height});
-    const context = canvas.getContext("2d"), pixels = context.createImageData(image.width, image.height);
-    const bytes = pixels.data, rgb = [0, 0, 0];
+    const context = canvas.getContext("2d"),
+      pixels = context.createImageData(image.width, image.height);
+    const bytes = pixels.data,
+      rgb = [0, 0, 0];
     for (let i = 0, n = image.packed.length; i < n; ++i) {
       color_of(i, rgb);
       bytes[4 * i] = rgb[0];
@@ -42,8 +55,11 @@ const Tone = (() => {
   /// A pixel's relative error, sqrt of the mean over channels of (x-r)^2 / (r^2 + (0.1 mean r)^2); NaN where either is.
   /// Comes with `high`, the first of 1, 2, 5 x 10^n that 99 % of the pixels stay below.
   function relative_error(image, reference) {
-    const floor = (0.1 * mean_of(reference)) ** 2, n = image.packed.length;
-    const error = new Float32Array(n), x = [0, 0, 0], r = [0, 0, 0];
+    const floor = (0.1 * mean_of(reference)) ** 2,
+      n = image.packed.length;
+    const error = new Float32Array(n),
+      x = [0, 0, 0],
+      r = [0, 0, 0];
     for (let i = 0; i < n; ++i) {
       Images.unpack(image.packed, i, x);
       Images.unpack(reference.packed, i, r);
@@ -85,8 +101,10 @@ const Tone = (() => {
   function error_map(image, error, high) {
     return paint(image, (i, rgb) => {
       if (Number.isNaN(error[i])) return rgb.splice(0, 3, ...kNan);
-      const place = Math.min(1, error[i] / high) * (stops.length - 1), below = Math.min(Math.floor(place), stops.length - 2);
-      for (let c = 0; c < 3; ++c) rgb[c] = stops[below][c] + (place - below) * (stops[below + 1][c] - stops[below][c]);
+      const place = Math.min(1, error[i] / high) * (stops.length - 1),
+        below = Math.min(Math.floor(place), stops.length - 2);
+      for (let c = 0; c < 3; ++c)
+        rgb[c] = stops[below][c] + (place - below) * (stops[below + 1][c] - stops[below][c]);
     });
   }
 

@@ -10,15 +10,25 @@ const {chromium} = createRequire(join(work, "driver", "package.json"))("playwrig
 
 const profile = mkdtempSync(join(tmpdir(), "report-test-"));
 const context = await chromium.launchPersistentContext(profile, {
-  executablePath: process.env.REPORT_CHROMIUM, headless: true, viewport: {width: 1280, height: 900},
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-         "--disable-component-update", "--disable-sync"],
+  executablePath: process.env.REPORT_CHROMIUM,
+  headless: true,
+  viewport: {width: 1280, height: 900},
+  args: [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
 });
 export const page = context.pages()[0] ?? (await context.newPage());
 page.setDefaultTimeout(10000);
 
 /// All addresses the page has asked for, and all errors it has raised or printed.
-export const requests = [], problems = [];
+export const requests = [],
+  problems = [];
 context.on("request", (request) => requests.push(request.url()));
 page.on("pageerror", (error) => problems.push(error.message));
 page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
@@ -37,7 +47,8 @@ export async function open_report(folder, {width = 1280, height = 900, scheme = 
 }
 
 /// Two frames: whatever was asked for has been drawn.
-export const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+export const settle = () =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 /// Waits until what the viewer was asked for has been loaded and drawn.
 export async function viewer_ready() {
@@ -51,10 +62,19 @@ export const readout = () => page.locator("#viewer .readout").textContent();
 export const label = (i) => page.locator("#viewer .label").nth(i).textContent();
 
 /// [r, g, b] of the canvas at a place in CSS px.
-export const color_at = (x, y) => canvas().evaluate((element, [cx, cy]) => {
-  const scale = element.width / element.clientWidth;
-  return [...element.getContext("2d").getImageData(Math.floor(cx * scale), Math.floor(cy * scale), 1, 1).data.slice(0, 3)];
-}, [x, y]);
+export const color_at = (x, y) =>
+  canvas().evaluate(
+    (element, [cx, cy]) => {
+      const scale = element.width / element.clientWidth;
+      return [
+        ...element
+          .getContext("2d")
+          .getImageData(Math.floor(cx * scale), Math.floor(cy * scale), 1, 1)
+          .data.slice(0, 3),
+      ];
+    },
+    [x, y],
+  );
 
 /// Moves the pointer to a place of the canvas, in CSS px from its corner.
 export async function point_at(x, y) {

@@ -10,11 +10,14 @@ const kPanel = '#panels figure[data-scene="scene-0"]';
 /// Reads the chart's scales off its tick labels, knowing nothing of the code that drew them: least squares through
 /// (position, log10 of label) or (position, label).
 async function read_axes({log_y = true} = {}) {
-  const ticks = await page.locator(kPanel).evaluate((figure) => ["x", "y"].map((dimension) =>
-    [...figure.querySelectorAll(`[aria-label="${dimension}-axis tick label"] text`)].map((text) => {
-      const [, x, y] = /translate\(([-\d.]+),([-\d.]+)\)/.exec(text.getAttribute("transform"));
-      return {at: Number(dimension === "x" ? x : y), value: Number(text.textContent.replace("−", "-"))};
-    })));
+  const ticks = await page.locator(kPanel).evaluate((figure) =>
+    ["x", "y"].map((dimension) =>
+      [...figure.querySelectorAll(`[aria-label="${dimension}-axis tick label"] text`)].map((text) => {
+        const [, x, y] = /translate\(([-\d.]+),([-\d.]+)\)/.exec(text.getAttribute("transform"));
+        return {at: Number(dimension === "x" ? x : y), value: Number(text.textContent.replace("−", "-"))};
+      }),
+    ),
+  );
   return [fit(ticks[0], true), fit(ticks[1], log_y)];
 }
 
@@ -27,30 +30,46 @@ function fit(ticks, log) {
   return (value) => my + slope * ((log ? Math.log10(value) : value) - mx);
 }
 
-const markers = () => page.locator(`${kPanel} g.points > *`).evaluateAll((all) => all.map((element) => {
-  const [, x, y] = /translate\(([-\d.]+),([-\d.]+)\)/.exec(element.getAttribute("transform"));
-  return {x: Number(x), y: Number(y), name: element.getAttribute("aria-label"), fill: element.getAttribute("fill")};
-}));
+const markers = () =>
+  page.locator(`${kPanel} g.points > *`).evaluateAll((all) =>
+    all.map((element) => {
+      const [, x, y] = /translate\(([-\d.]+),([-\d.]+)\)/.exec(element.getAttribute("transform"));
+      return {
+        x: Number(x),
+        y: Number(y),
+        name: element.getAttribute("aria-label"),
+        fill: element.getAttribute("fill"),
+      };
+    }),
+  );
 
 /// The groups of the first scene as their names are shown.
 function groups_of(results) {
   const method = new Map(results.methods.map((m) => [m.id, m.label]));
-  return results.groups.filter((g) => g.scene === "scene-0" && g.time).map((group) => {
-    const [name, value] = Object.entries(group.varied)[0];
-    return {...group, name: `${method.get(group.method)} · ${name} ${value}`};
-  });
+  return results.groups
+    .filter((g) => g.scene === "scene-0" && g.time)
+    .map((group) => {
+      const [name, value] = Object.entries(group.varied)[0];
+      return {...group, name: `${method.get(group.method)} · ${name} ${value}`};
+    });
 }
 
 /// Groups that no other beats in time and error at once, by comparing all pairs.
-const front_of = (groups, error) => groups.filter((g) => !groups.some((other) => other !== g
-  && other.time.mean <= g.time.mean && error(other) <= error(g)));
+const front_of = (groups, error) =>
+  groups.filter(
+    (g) => !groups.some((other) => other !== g && other.time.mean <= g.time.mean && error(other) <= error(g)),
+  );
 
 /// The corners of the drawn front.
-const drawn_front = () => page.locator(`${kPanel} g.front path`).getAttribute("d")
-  .then((d) => [...d.matchAll(/([-\d.]+),([-\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]));
+const drawn_front = () =>
+  page
+    .locator(`${kPanel} g.front path`)
+    .getAttribute("d")
+    .then((d) => [...d.matchAll(/([-\d.]+),([-\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]));
 
 async function expect_front(groups, error, x, y) {
-  const corners = await drawn_front(), front = front_of(groups, error);
+  const corners = await drawn_front(),
+    front = front_of(groups, error);
   for (const g of groups) {
     const on_it = corners.some(([cx, cy]) => Math.hypot(cx - x(g.time.mean), cy - y(error(g))) < 1.5);
     assert.equal(on_it, front.includes(g), g.name);
@@ -77,7 +96,10 @@ export function chart_tests(results, report) {
     const [x, y] = await read_axes();
     await expect_places(groups, x, y, (g) => g.scores.rmse.mean);
     const hollow = (await markers()).filter((m) => m.fill.includes("surface")).map((m) => m.name);
-    assert.deepEqual(hollow, groups.filter((g) => g.reference_limited).map((g) => g.name));
+    assert.deepEqual(
+      hollow,
+      groups.filter((g) => g.reference_limited).map((g) => g.name),
+    );
     assert.equal(await page.locator("#panels figure").count(), results.scenes.length);
   });
 
@@ -89,18 +111,35 @@ export function chart_tests(results, report) {
   });
 
   test("intervals smaller than their marker show beyond it", async () => {
-    const hvl = groups.find((g) => g.method === "hvl-5"), [x, y] = await read_axes();
-    const bars = await page.locator(`${kPanel} g.interval`).evaluateAll((layers) => layers.flatMap((layer) =>
-      [...layer.querySelectorAll("path")].filter((p) => !p.closest("marker")).map((path) => ({
-        d: path.getAttribute("d"), cap: Number(layer.querySelector("marker")?.getAttribute("markerWidth")),
-        stroke: path.getAttribute("stroke") ?? layer.getAttribute("stroke")}))));
+    const hvl = groups.find((g) => g.method === "hvl-5"),
+      [x, y] = await read_axes();
+    const bars = await page
+      .locator(`${kPanel} g.interval`)
+      .evaluateAll((layers) =>
+        layers.flatMap((layer) =>
+          [...layer.querySelectorAll("path")]
+            .filter((p) => !p.closest("marker"))
+            .map((path) => ({
+              d: path.getAttribute("d"),
+              cap: Number(layer.querySelector("marker")?.getAttribute("markerWidth")),
+              stroke: path.getAttribute("stroke") ?? layer.getAttribute("stroke"),
+            })),
+        ),
+      );
     const mine = bars.filter(({d}) => {
       const [[x1, y1], [x2, y2]] = [...d.matchAll(/([-\d.]+),([-\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
-      return Math.abs(x1 - x(hvl.time.mean)) < 1 && Math.abs(x2 - x1) < 0.01
-        && Math.abs(y1 - y(hvl.scores.rmse.low)) < 1.5 && Math.abs(y2 - y(hvl.scores.rmse.high)) < 1.5;
+      return (
+        Math.abs(x1 - x(hvl.time.mean)) < 1
+        && Math.abs(x2 - x1) < 0.01
+        && Math.abs(y1 - y(hvl.scores.rmse.low)) < 1.5
+        && Math.abs(y2 - y(hvl.scores.rmse.high)) < 1.5
+      );
     });
     assert.ok(Math.abs(y(hvl.scores.rmse.low) - y(hvl.scores.rmse.high)) < 4, "the fixture has such an interval");
-    assert.ok(mine.some((bar) => bar.stroke.startsWith("var(--m") && bar.cap >= 20), JSON.stringify(mine));
+    assert.ok(
+      mine.some((bar) => bar.stroke.startsWith("var(--m") && bar.cap >= 20),
+      JSON.stringify(mine),
+    );
   });
 
   test("SSIM is drawn as 1 − SSIM on a log axis, PSNR upside down: lower left stays better", async () => {
@@ -113,16 +152,28 @@ export function chart_tests(results, report) {
     await settle();
     [x, y] = await read_axes({log_y: false});
     await expect_places(groups, x, y, (g) => g.scores.psnr.mean);
-    await expect_front(groups, (g) => -g.scores.psnr.mean, x, (negated) => y(-negated));
+    await expect_front(
+      groups,
+      (g) => -g.scores.psnr.mean,
+      x,
+      (negated) => y(-negated),
+    );
     assert.ok(y(20) < y(30));
   });
 
   test("a metric with zeros keeps them, on a row of their own", async () => {
     await metric("fireflies");
     await settle();
-    const zeros = groups.filter((g) => g.scores.fireflies.mean === 0), drawn = await markers();
-    const row = await page.locator(kPanel).evaluate((figure) => [...figure.querySelectorAll('[aria-label="y-axis tick label"] text')]
-      .filter((t) => t.textContent === "0").map((t) => Number(/,([-\d.]+)\)/.exec(t.getAttribute("transform"))[1]))[0]);
+    const zeros = groups.filter((g) => g.scores.fireflies.mean === 0),
+      drawn = await markers();
+    const row = await page
+      .locator(kPanel)
+      .evaluate(
+        (figure) =>
+          [...figure.querySelectorAll('[aria-label="y-axis tick label"] text')]
+            .filter((t) => t.textContent === "0")
+            .map((t) => Number(/,([-\d.]+)\)/.exec(t.getAttribute("transform"))[1]))[0],
+      );
     assert.ok(zeros.length > 3);
     for (const g of zeros) assert.ok(Math.abs(drawn.find((m) => m.name === g.name).y - row) < 1, g.name);
     await metric("RMSE");
@@ -131,7 +182,8 @@ export function chart_tests(results, report) {
   test("the legend hides a method everywhere, and the front is drawn anew", async () => {
     await page.locator("#legend button", {hasText: "hvl"}).click();
     await settle();
-    const rest = groups.filter((g) => g.method !== "hvl-5"), [x, y] = await read_axes();
+    const rest = groups.filter((g) => g.method !== "hvl-5"),
+      [x, y] = await read_axes();
     await expect_places(rest, x, y, (g) => g.scores.rmse.mean);
     await expect_front(rest, (g) => g.scores.rmse.mean, x, y);
     assert.equal(await page.locator("#strips").getByText("hvl, 5 bands").count(), 0);
@@ -166,8 +218,10 @@ export function chart_tests(results, report) {
   test("error over time: a curve with a marker at each scored pass, single points for the rest", async () => {
     await page.getByRole("button", {name: "Error over time"}).click();
     await settle();
-    const [x, y] = await read_axes(), drawn = await markers();
-    const path = groups.filter((g) => g.method === "path"), points = path.reduce((n, g) => n + 1 + Math.log2(g.varied.passes), 0);
+    const [x, y] = await read_axes(),
+      drawn = await markers();
+    const path = groups.filter((g) => g.method === "path"),
+      points = path.reduce((n, g) => n + 1 + Math.log2(g.varied.passes), 0);
     assert.equal(drawn.length, points + groups.length - path.length);
     const cells = results.cells.filter((c) => c.group === path[2].id);
     const mean = (value) => cells.reduce((sum, c) => sum + value(c.curve[3]), 0) / cells.length;
@@ -188,7 +242,8 @@ export function chart_tests(results, report) {
     const seeds = results.cells.filter((c) => c.scene === "scene-0" && c.status !== "failed").length;
     assert.equal(await strips.locator("g.points > *").count(), seeds);
     assert.equal(await strips.locator("g.worst > *").count(), groups.length);
-    const group = groups[0], worst = results.cells.filter((c) => c.group === group.id).sort((a, b) => b.scores.rmse - a.scores.rmse)[0];
+    const group = groups[0],
+      worst = results.cells.filter((c) => c.group === group.id).sort((a, b) => b.scores.rmse - a.scores.rmse)[0];
     await strips.locator(`g.points > [aria-label="${group.name}, seed ${worst.seed}"]`).focus();
     assert.ok((await page.locator("#tooltip").innerText()).includes(worst.scores.rmse.toPrecision(3)));
   });

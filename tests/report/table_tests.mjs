@@ -10,10 +10,11 @@ const heading = (key) => page.locator(`#results th[data-key="${key}"]`);
 const filter = (words) => page.locator("#filter").fill(words);
 
 /// The texts of a column from top to bottom.
-const column = (key) => page.locator("#results table").evaluate((table, name) => {
-  const at = [...table.querySelectorAll("th")].findIndex((th) => th.dataset.key === name);
-  return [...table.querySelectorAll("tbody tr")].map((row) => row.cells[at].innerText);
-}, key);
+const column = (key) =>
+  page.locator("#results table").evaluate((table, name) => {
+    const at = [...table.querySelectorAll("th")].findIndex((th) => th.dataset.key === name);
+    return [...table.querySelectorAll("tbody tr")].map((row) => row.cells[at].innerText);
+  }, key);
 
 const numbers = (texts) => texts.filter((t) => t !== "–").map((t) => Number(t.replaceAll("−", "-")));
 const rising = (values) => values.every((v, i) => i === 0 || values[i - 1] <= v);
@@ -40,12 +41,20 @@ export function table_tests(results, report) {
     // Equal ones stay in the order of the heading before.
     await heading("worst").getByRole("button").click();
     await heading("method").getByRole("button").click();
-    const methods = await column("method"), worst = await column("worst");
+    const methods = await column("method"),
+      worst = await column("worst");
     assert.ok(rising(numbers(worst.filter((_, i) => methods[i].includes("vpl")))));
   });
 
   test("headings carry units; the worst seed, noise and bias have columns", async () => {
-    for (const [key, unit] of [["time", "s"], ["rmse", "W m⁻² sr⁻¹"], ["worst", "W m⁻² sr⁻¹"], ["noise", "W m⁻² sr⁻¹"], ["bias_part", "W m⁻² sr⁻¹"], ["psnr", "dB"]])
+    for (const [key, unit] of [
+      ["time", "s"],
+      ["rmse", "W m⁻² sr⁻¹"],
+      ["worst", "W m⁻² sr⁻¹"],
+      ["noise", "W m⁻² sr⁻¹"],
+      ["bias_part", "W m⁻² sr⁻¹"],
+      ["psnr", "dB"],
+    ])
       assert.ok((await heading(key).innerText()).endsWith(unit), `${key}: ${await heading(key).innerText()}`);
     const group = results.groups[0];
     await filter("atrium vpl 100");

@@ -11,9 +11,13 @@ import {axisX, axisY, gridX, gridY} from "@observablehq/plot";
 /// a decade of the axis, or half of what it spans.
 export function make_axis(values, kind, reverse = false, extra = []) {
   const finite = (list) => list.filter((v) => v !== null && v !== undefined && Number.isFinite(v));
-  const all = finite(values), low = Math.min(...all.filter((v) => v > 0 || kind !== "log")), high = Math.max(...all);
-  const near = kind === "log" ? (v) => v > low / 10 && v < high * 10
-    : (v) => v > low - (high - low) / 2 && v < high + (high - low) / 2;
+  const all = finite(values),
+    low = Math.min(...all.filter((v) => v > 0 || kind !== "log")),
+    high = Math.max(...all);
+  const near =
+    kind === "log"
+      ? (v) => v > low / 10 && v < high * 10
+      : (v) => v > low - (high - low) / 2 && v < high + (high - low) / 2;
   const used = [...all, ...finite(extra).filter(near)];
   const axis = kind === "log" ? log_axis(used, reverse) : linear_axis(used, reverse);
   axis.beyond = (v) => (reverse ? v > axis.domain[1] : v < axis.domain[0]);
@@ -22,7 +26,8 @@ export function make_axis(values, kind, reverse = false, extra = []) {
 
 function log_axis(values, reverse) {
   const positive = values.filter((v) => v > 0);
-  let low = positive.length ? Math.min(...positive) : 0.1, high = positive.length ? Math.max(...positive) : 1;
+  let low = positive.length ? Math.min(...positive) : 0.1,
+    high = positive.length ? Math.max(...positive) : 1;
   // A single value, or values next to each other, get a third of a decade to stand in.
   const narrow = 2 / Math.max(high / low, 1);
   const pad = narrow > 1 ? Math.sqrt(narrow) : Math.pow(high / low, 0.07);
@@ -43,12 +48,19 @@ function log_axis(values, reverse) {
 }
 
 function linear_axis(values, reverse) {
-  let low = values.length ? Math.min(...values) : 0, high = values.length ? Math.max(...values) : 1;
+  let low = values.length ? Math.min(...values) : 0,
+    high = values.length ? Math.max(...values) : 1;
   const pad = high > low ? 0.07 * (high - low) : 0.1 * Math.abs(high) || 1;
   low -= pad;
   high += pad;
   const ticks = linear_ticks(low, high);
-  return {scale: {type: "linear", domain: [low, high], reverse}, domain: [low, high], ticks, format: tick_text, place: (v) => v};
+  return {
+    scale: {type: "linear", domain: [low, high], reverse},
+    domain: [low, high],
+    ticks,
+    format: tick_text,
+    place: (v) => v,
+  };
 }
 
 /// Powers of ten; with 2 and 5 between them where there is room; evenly spaced ones within a factor of two or so.
@@ -69,7 +81,8 @@ function log_ticks(low, high) {
 }
 
 function linear_ticks(low, high) {
-  const rough = (high - low) / 4, decade = Math.pow(10, Math.floor(Math.log10(rough)));
+  const rough = (high - low) / 4,
+    decade = Math.pow(10, Math.floor(Math.log10(rough)));
   const step = [1, 2, 5, 10].map((f) => f * decade).find((s) => s >= rough * 0.9);
   const ticks = [];
   for (let i = Math.ceil(low / step); i * step <= high; ++i) ticks.push(Number((i * step).toPrecision(12)));
@@ -84,7 +97,11 @@ function tick_text(v) {
 
 /// Grid and labelled axis of `dimension` "x" or "y". The label stands where Plot puts it: the arrow end of the axis.
 export function axis_marks(dimension, axis, label) {
-  const grid = dimension === "x" ? gridX : gridY, draw = dimension === "x" ? axisX : axisY;
+  const grid = dimension === "x" ? gridX : gridY,
+    draw = dimension === "x" ? axisX : axisY;
   const options = {ticks: axis.ticks, tickFormat: axis.format, tickSize: 4, fontSize: 11, label: null};
-  return [grid(axis.ticks, {className: "grid"}), draw({...options, label, labelArrow: "none", labelOffset: dimension === "x" ? 34 : undefined})];
+  return [
+    grid(axis.ticks, {className: "grid"}),
+    draw({...options, label, labelArrow: "none", labelOffset: dimension === "x" ? 34 : undefined}),
+  ];
 }

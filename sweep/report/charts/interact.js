@@ -14,8 +14,10 @@ export function make_interactive(svg, points, elements, {on_hover, on_pick}) {
   };
   const nearest = (event) => {
     const box = svg.getBoundingClientRect();
-    const x = (event.clientX - box.left) / scale(), y = (event.clientY - box.top) / scale();
-    let best = null, distance = kReach;
+    const x = (event.clientX - box.left) / scale(),
+      y = (event.clientY - box.top) / scale();
+    let best = null,
+      distance = kReach;
     for (const p of points) {
       const d = Math.hypot(p.px - x, p.py - y);
       if (d < distance) [best, distance] = [p, d];

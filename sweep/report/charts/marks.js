@@ -2,17 +2,20 @@
 
 import {dot, link, plot, ruleY, text} from "@observablehq/plot";
 
-const kCap = 10;  // px, half the width of a cap; markers reach 5 to 8 px
+const kCap = 10; // px, half the width of a cap; markers reach 5 to 8 px
 
 /// Bars with caps, in the point's colour and with a rim of the page's: `horizontal` and `vertical` ones, [{at, low, high,
 /// color}]. They lie under the markers and their caps are wider than any marker, so that the interval of a marker that
 /// hides it still shows on both sides: as two lines, or as one where nothing can be told from zero.
 export function interval_bars(horizontal, vertical = []) {
-  const along_x = {x1: "low", x2: "high", y1: "at", y2: "at"}, along_y = {x1: "at", x2: "at", y1: "low", y2: "high"};
+  const along_x = {x1: "low", x2: "high", y1: "at", y2: "at"},
+    along_y = {x1: "at", x2: "at", y1: "low", y2: "high"};
   const layer = (stroke, strokeWidth) => {
     const options = {className: "interval", stroke, strokeWidth};
-    return [link(horizontal, {...along_x, ...options, marker: cap(true, strokeWidth)}),
-            link(vertical, {...along_y, ...options, marker: cap(false, strokeWidth)})];
+    return [
+      link(horizontal, {...along_x, ...options, marker: cap(true, strokeWidth)}),
+      link(vertical, {...along_y, ...options, marker: cap(false, strokeWidth)}),
+    ];
   };
   return [...layer("var(--surface)", 3), ...layer("color", 1.3)];
 }
@@ -26,8 +29,15 @@ function cap(horizontal, width) {
       return node;
     };
     const size = 2 * kCap + 2;
-    const marker = make("marker", {viewBox: `${-size / 2} ${-size / 2} ${size} ${size}`, markerWidth: size, markerHeight: size,
-                                   markerUnits: "userSpaceOnUse", orient: "0", stroke: color, "stroke-width": width});
+    const marker = make("marker", {
+      viewBox: `${-size / 2} ${-size / 2} ${size} ${size}`,
+      markerWidth: size,
+      markerHeight: size,
+      markerUnits: "userSpaceOnUse",
+      orient: "0",
+      stroke: color,
+      "stroke-width": width,
+    });
     marker.append(make("path", {d: horizontal ? `M0,${-kCap}V${kCap}` : `M${-kCap},0H${kCap}`}));
     return marker;
   };
@@ -37,9 +47,21 @@ function cap(horizontal, width) {
 /// shape apart from the bars behind.
 export function markers(points, options) {
   return [
-    dot(points, {...options, symbol: "shape", r: 5.2, fill: "var(--surface)", stroke: "var(--surface)", strokeWidth: 3.2}),
     dot(points, {
-      ...options, className: "points", symbol: "shape", r: 5, stroke: "color", strokeWidth: 1.6,
+      ...options,
+      symbol: "shape",
+      r: 5.2,
+      fill: "var(--surface)",
+      stroke: "var(--surface)",
+      strokeWidth: 3.2,
+    }),
+    dot(points, {
+      ...options,
+      className: "points",
+      symbol: "shape",
+      r: 5,
+      stroke: "color",
+      strokeWidth: 1.6,
       fill: (p) => (p.hollow ? "var(--surface)" : p.color),
     }),
   ];
@@ -48,7 +70,8 @@ export function markers(points, options) {
 /// Dotted lines at the references' own error; one far below everything else is a word at the edge, since a line there
 /// would squeeze the points together.
 export function floor_marks(floors, axis) {
-  const near = floors.filter((f) => !axis.beyond(f.value)), far = floors.filter((f) => axis.beyond(f.value));
+  const near = floors.filter((f) => !axis.beyond(f.value)),
+    far = floors.filter((f) => axis.beyond(f.value));
   const words = {frameAnchor: "bottom-left", textAnchor: "start", dx: 4, className: "floor-label", fontSize: 11};
   return [
     ruleY(near, {y: (f) => axis.place(f.value), className: "floor", strokeDasharray: "2,4", strokeWidth: 1.4}),

@@ -12,22 +12,51 @@ import {floor_marks} from "./marks.js";
 export function over_time(spec) {
   const {curves, floors} = spec;
   const all = curves.flatMap((curve, i) => curve.points.map((p) => ({...p, curve: i, ...style_of(curve)})));
-  const x = make_axis(all.map((p) => p.x), "log");
-  const y = make_axis(all.map((p) => p.y), spec.y_kind, spec.y_reverse, floors.map((f) => f.value));
+  const x = make_axis(
+    all.map((p) => p.x),
+    "log",
+  );
+  const y = make_axis(
+    all.map((p) => p.y),
+    spec.y_kind,
+    spec.y_reverse,
+    floors.map((f) => f.value),
+  );
   for (const p of all) [p.x, p.y] = [x.place(p.x), y.place(p.y)];
-  const means = all.filter((p) => p.mean), seeds = all.filter((p) => !p.mean);
+  const means = all.filter((p) => p.mean),
+    seeds = all.filter((p) => !p.mean);
 
   const channels = {x: "x", y: "y", z: "curve", stroke: "color"};
   const svg = plot({
-    width: spec.width, height: spec.height, marginLeft: 52, marginRight: 14, marginTop: 26, marginBottom: 42,
-    x: x.scale, y: y.scale, color: {type: "identity"},
+    width: spec.width,
+    height: spec.height,
+    marginLeft: 52,
+    marginRight: 14,
+    marginTop: 26,
+    marginBottom: 42,
+    x: x.scale,
+    y: y.scale,
+    color: {type: "identity"},
     marks: [
-      ...axis_marks("x", x, spec.x_label), ...axis_marks("y", y, spec.y_label),
+      ...axis_marks("x", x, spec.x_label),
+      ...axis_marks("y", y, spec.y_label),
       ...floor_marks(floors, y),
       line(seeds, {...channels, strokeWidth: 1, strokeOpacity: 0.35}),
       ...["", "5,3"].map((dashes) =>
-        line(means.filter((p) => p.dashed === (dashes !== "")), {...channels, strokeWidth: 2, strokeDasharray: dashes})),
-      dot(means, {x: "x", y: "y", symbol: "shape", fill: "color", stroke: "var(--surface)", r: 4, className: "points"}),
+        line(
+          means.filter((p) => p.dashed === (dashes !== "")),
+          {...channels, strokeWidth: 2, strokeDasharray: dashes},
+        ),
+      ),
+      dot(means, {
+        x: "x",
+        y: "y",
+        symbol: "shape",
+        fill: "color",
+        stroke: "var(--surface)",
+        r: 4,
+        className: "points",
+      }),
     ],
   });
   for (const p of means) [p.px, p.py] = [svg.scale("x").apply(p.x), svg.scale("y").apply(p.y)];

@@ -12,9 +12,16 @@ import {floor_marks, interval_bars, markers} from "./marks.js";
 ///        front: [{x, y}] by rising x, floors: [{value, label}], on_hover, on_pick}. Bounds may be null: no bar.
 export function pareto(spec) {
   const {points, front, floors} = spec;
-  const x = make_axis(points.flatMap((p) => [p.x, p.x_low > 0 ? p.x_low : null, p.x_high]), "log");
-  const y = make_axis(points.flatMap((p) => [p.y, p.y_high, p.y_low > p.y / 10 || p.y_low === 0 ? p.y_low : null]),
-                      spec.y_kind, spec.y_reverse, floors.map((f) => f.value));
+  const x = make_axis(
+    points.flatMap((p) => [p.x, p.x_low > 0 ? p.x_low : null, p.x_high]),
+    "log",
+  );
+  const y = make_axis(
+    points.flatMap((p) => [p.y, p.y_high, p.y_low > p.y / 10 || p.y_low === 0 ? p.y_low : null]),
+    spec.y_kind,
+    spec.y_reverse,
+    floors.map((f) => f.value),
+  );
   const at = (p) => ({...p, x: x.place(p.x), y: y.place(p.y)});
   const placed = points.map(at);
 
@@ -24,13 +31,24 @@ export function pareto(spec) {
 
   // A line of one point is none; Plot draws those of each `line` apart.
   const lines = ["", "5,3"].map((dashes) =>
-    line(placed.filter((p) => p.dashed === (dashes !== "")),
-         {x: "x", y: "y", z: "line", stroke: "color", strokeWidth: 1.6, strokeDasharray: dashes, className: "lines"}));
+    line(
+      placed.filter((p) => p.dashed === (dashes !== "")),
+      {x: "x", y: "y", z: "line", stroke: "color", strokeWidth: 1.6, strokeDasharray: dashes, className: "lines"},
+    ),
+  );
   const svg = plot({
-    width: spec.width, height: spec.height, marginLeft: 52, marginRight: 14, marginTop: 26, marginBottom: 42,
-    x: x.scale, y: y.scale, color: {type: "identity"},
+    width: spec.width,
+    height: spec.height,
+    marginLeft: 52,
+    marginRight: 14,
+    marginTop: 26,
+    marginBottom: 42,
+    x: x.scale,
+    y: y.scale,
+    color: {type: "identity"},
     marks: [
-      ...axis_marks("x", x, spec.x_label), ...axis_marks("y", y, spec.y_label),
+      ...axis_marks("x", x, spec.x_label),
+      ...axis_marks("y", y, spec.y_label),
       line(steps, {x: "x", y: "y", curve: "step-after", className: "front", strokeWidth: 7, clip: true}),
       ...floor_marks(floors, y),
       ...lines,
