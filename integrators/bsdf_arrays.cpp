@@ -127,6 +127,20 @@ void evaluate_all(const Entry& e, const float* rows, int count, const float* x, 
   }
 }
 
+template <Fresnel kFresnel>
+void multiply_by_all(const Entry& e, const float* rows, int count, const float* x, const float* y,
+                     const float* z, const float* weights, vec3 color, float most, float* __restrict r,
+                     float* __restrict g, float* __restrict b) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    float fr, fg, fb, unused;
+    evaluate_lane<kFresnel, false>(e, rows, x[i], y[i], z[i], fr, fg, fb, unused);
+    r[i] = std::fmin(r[i] * weights[i] * (fr * color.x), most);
+    g[i] = std::fmin(g[i] * weights[i] * (fg * color.y), most);
+    b[i] = std::fmin(b[i] * weights[i] * (fb * color.z), most);
+  }
+}
+
 bool is_measured_from_camera(const Bsdf& bsdf, const BsdfContext& view, Lobes lobes) {
   return bsdf.kind == BsdfKind::measured && view.end == PathEnd::camera && has(lobes, Lobes::specular);
 }
@@ -269,6 +283,47 @@ bool BsdfArrays::constant(int i, vec3* f) const {
       classes_[i] == Class::constant || (classes_[i] == Class::schlick && e.specular == 0 && e.coat == 0);
   if (flat) *f = {e.d_r, e.d_g, e.d_b};
   return flat;
+}
+
+void BsdfArrays::multiply_by_one(int i, int n, const float* x, const float* y, const float* z,
+                                 const float* weights, vec3 color, float most, float* r, float* g,
+                                 float* b) const {
+  vec3 flat;
+  if (constant(i, &flat)) {
+    flat *= color;
+    for (int k = 0; k < n; ++k) {
+      const float w = z[k] > kMinCosine ? weights[k] : 0.0f;
+      r[k] = std::fmin(r[k] * (w * flat.x), most), g[k] = std::fmin(g[k] * (w * flat.y), most);
+      b[k] = std::fmin(b[k] * (w * flat.z), most);
+    }
+    return;
+  }
+  const Entry e = entry(i);
+  const auto all = [&](auto function) {
+    function(e, rows_.data(), n, x, y, z, weights, color, most, r, g, b);
+  };
+  switch (classes_[i]) {
+    case Class::schlick:
+      return all(multiply_by_all<Fresnel::schlick>);
+    case Class::dielectric:
+      return all(multiply_by_all<Fresnel::dielectric>);
+    case Class::conductor:
+      return all(multiply_by_all<Fresnel::conductor>);
+    default:
+      break;
+  }
+  constexpr int kMany = 64;
+  float fr[kMany], fg[kMany], fb[kMany];
+  for (int from = 0; from < n; from += kMany) {
+    const int m = std::min(kMany, n - from);
+    evaluate_one(i, m, x + from, y + from, z + from, fr, fg, fb);
+    for (int k = 0; k < m; ++k) {
+      const float w = weights[from + k];
+      r[from + k] = std::fmin(r[from + k] * w * (fr[k] * color.x), most);
+      g[from + k] = std::fmin(g[from + k] * w * (fg[k] * color.y), most);
+      b[from + k] = std::fmin(b[from + k] * w * (fb[k] * color.z), most);
+    }
+  }
 }
 
 void BsdfArrays::evaluate_one(int i, int n, const float* x, const float* y, const float* z, float* r,

@@ -38,6 +38,9 @@ class BsdfArrays {
   void evaluate_one(int i, int n, const float* x, const float* y, const float* z, float* r, float* g,
                     float* b) const;
 
+  /// Multiplies r, g, b by f of entry i for n directions, by `weights` and by `color`; at most `most`.
+  void multiply_by_one(int i, int n, const float* x, const float* y, const float* z, const float* weights,
+                       vec3 color, float most, float* r, float* g, float* b) const;
   /// Whether entry i is the same for all directions above the horizon, and then its value, 1/sr.
   bool constant(int i, vec3* f) const;
 

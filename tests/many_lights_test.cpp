@@ -7,7 +7,9 @@
 #include "core/sampling.h"
 #include "integrators/bsdf_arrays.h"
 #include "integrators/vpl/vpl.h"
+#include "integrators/vsl/vsl.h"
 #include "tests/support.h"
+#include "tests/virtual_light_support.h"
 
 namespace zonal {
 namespace {
@@ -101,6 +103,122 @@ INSTANTIATE_TEST_SUITE_P(Lobes, BrdfsInArrays, testing::Values(Lobes::all, Lobes
                                   : info.param == Lobes::diffuse ? "diffuse"
                                                                  : "specular";
                          });
+
+/// A corner of two glossy walls and a floor, its lights on the walls.
+Scene corner(const test::Similarity& s) {
+  std::vector<std::unique_ptr<Material>> all;
+  for (const float roughness : {0.3f, 0.6f}) {
+    auto material = std::make_unique<MetallicRoughnessMaterial>();
+    material->roughness.value = roughness, material->metallic.value = 0.3f;
+    all.push_back(std::move(material));
+  }
+  return test::scene_of({{{-1, 0, -1}, {0, 0, 3}, {3, 0, 0}, 0},
+                         {{-1, 0, -1}, {3, 0, 0}, {0, 2, 0}, 1},
+                         {{-1, 0, -1}, {0, 2, 0}, {0, 0, 3}, 1}},
+                        std::move(all), test::camera_at({1.6f, 1.2f, 1.5f}, {-0.3f, 0.3f, -0.4f}, 8, 0.7f),
+                        s);
+}
+VirtualLightSet lights_in_the_corner(const Scene& scene) {
+  VirtualLightSet set;
+  for (uint32_t i = 0; i < 60; ++i) {
+    const float u = unit_float(hash32(i, 1)), v = unit_float(hash32(i, 2));
+    const vec3 in(0.5f, 0.4f + u, 0.7f);
+    set.lights.push_back(i % 2 ? test::light_at({-1, 1.8f * u + 0.1f, 2 * v - 0.9f}, {1, 0, 0}, in,
+                                                vec3(1, 2, 3), *scene.materials()[1])
+                               : test::light_at({2 * v - 0.9f, 1.8f * u + 0.1f, -1}, {0, 0, 1}, in,
+                                                vec3(2, 2, 1), *scene.materials()[0]));
+  }
+  return set;
+}
+
+/// Renders the corner as it is and turned, scaled and shifted with its lights; the largest relative
+/// difference.
+template <class Method, class Params>
+double change_under(const test::Similarity& s, const Params& params) {
+  const Scene here = corner({}), there = corner(s);
+  Method method(params), moved(params);
+  const VirtualLightSet set = lights_in_the_corner(here);
+  method.gather_from(set), moved.gather_from(test::transformed(set, s));
+  const Image image = test::image_of(here, method, 8), other = test::image_of(there, moved, 8);
+  double worst = 0, mean = 0;
+  for (const float v : image.pixels) mean += v / double(image.pixels.size());
+  for (size_t i = 0; i < image.pixels.size(); ++i)
+    worst = std::max(worst, std::abs(double(image.pixels[i]) - other.pixels[i]) / mean);
+  EXPECT_GT(mean, 0);
+  return worst;
+}
+
+TEST(ManyLights, turning_and_scaling_scene_and_lights_changes_nothing) {
+  test::Similarity s;
+  s.turn = mat3(glm::rotate(mat4(1), 2.1f, glm::normalize(vec3(1, -2, 0.5f))));
+  s.scale = 0.013f, s.shift = {0.02f, -0.01f, 0.03f};
+  VplParams vpl;
+  vpl.direct = ManyLightsParams::Direct::none;
+  vpl.occlusion = Occlusion::center, vpl.clamp = 0.1f;
+  const double vpl_change = change_under<VplIntegrator>(s, vpl);
+  EXPECT_LT(vpl_change, 1e-4);
+  VslParams vsl;
+  vsl.direct = ManyLightsParams::Direct::none;
+  for (const auto sampling : {VslParams::Sampling::cone, VslParams::Sampling::mis}) {
+    vsl.sampling = sampling;
+    // Noise included: directions are measured from the scene's own.
+    const double vsl_change = change_under<VslIntegrator>(s, vsl);
+    EXPECT_LT(vsl_change, 1e-4);
+  }
+  // It does see what it should: other units without the lights' powers following.
+  test::Similarity grown;
+  grown.scale = 2;
+  VirtualLightSet set = test::transformed(lights_in_the_corner(corner({})), grown);
+  for (VirtualLight& v : set.lights) v.power *= 0.25f;
+  VplIntegrator method(vpl), dim(vpl);
+  method.gather_from(lights_in_the_corner(corner({}))), dim.gather_from(set);
+  const double full = test::image_of(corner({}), method, 8).pixels[96];
+  EXPECT_NEAR(test::image_of(corner(grown), dim, 8).pixels[96], 0.25 * full, 1e-4 * full);
+}
+
+TEST(ManyLights, shadow_rays_are_spared_only_where_nothing_arrives) {
+  // Pixels times lights, less those whose contribution is exactly zero: counted one by one.
+  const Scene scene = corner({});
+  const VirtualLightSet set = lights_in_the_corner(scene);
+  VplParams params;
+  params.direct = ManyLightsParams::Direct::none;
+  VplIntegrator method(params);
+  method.gather_from(set);
+  Film film(8, 8);
+  const RenderReport report = render(scene, method, film, {.passes = 1}, {.threads = 1});
+  uint64_t lit = 0;
+  Camera camera = scene.camera();
+  camera.width = camera.height = 8;
+  for (int i = 0; i < 64; ++i) {
+    const vec3 view = camera.direction({float(i % 8) + 0.5f, float(i / 8) + 0.5f});
+    const Hit hit = scene.intersect(camera.position, view);
+    if (!hit.found()) continue;
+    const Surface s = scene.surface(hit, view);
+    for (const VirtualLight& v : set.lights) {
+      const vec3 w = glm::normalize(v.position - s.position);
+      lit += glm::dot(w, s.normal) > 0 && glm::dot(w, v.normal) < 0;
+    }
+  }
+  ASSERT_GT(lit, 500u);
+  // A light in a point's own plane may fall to either side by rounding.
+  EXPECT_NEAR(double(report.counters.shadow_rays), double(lit), 0.01 * double(lit));
+}
+
+TEST(ManyLights, lights_without_a_surface_leave_a_black_image_and_one_warning) {
+  const Scene scene = test::scene_from(R"({"camera": {"position": [0, 1, 3], "look_at": [0, 0, 0]},
+    "materials": [{"name": "a", "type": "lambert"}],
+    "objects": [{"name": "o", "type": "quad", "corner": [-2, 0, 2], "edges": [[4, 0, 0], [0, 0, -4]], "material": "a"}],
+    "lights": [{"type": "spot", "name": "torch", "position": [0, 1, 0], "look_at": [0, 2, 0], "intensity": 4}]})");
+  for (const IntegratorRow& row : integrator_table()) {
+    if (row.name != "vpl" && row.name != "vsl") continue;
+    const auto method = row.make(nlohmann::json::parse(R"({"direct": "none"})"), "", nullptr);
+    Film film(8, 8);
+    const RenderReport report = render(scene, *method, film, {.passes = 3}, {});
+    for (const float v : film.radiance().pixels) EXPECT_EQ(v, 0);
+    ASSERT_EQ(report.pass.warnings.size(), 1u) << row.name;
+    EXPECT_NE(report.pass.warnings[0].find("torch"), std::string::npos) << report.pass.warnings[0];
+  }
+}
 
 }  // namespace
 }  // namespace zonal

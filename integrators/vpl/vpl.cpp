@@ -58,39 +58,34 @@ std::unique_ptr<TileState> VplIntegrator::prepare_tile(const TilePoints& points)
   return std::make_unique<TileBrdfs>(points);
 }
 
-void VplIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
-  const bool yuksel = params_.attenuation == VplParams::Attenuation::yuksel;
-  const BsdfArrays& receivers = static_cast<const TileBrdfs*>(points.state)->brdfs;
+void VplIntegrator::gather_one(const TilePoints& points, int l, float* r, float* g, float* b) const {
   const int n = points.padded;
   Transfer t;
-  alignas(64) TilePoints::Floats er, eg, eb;
+  const auto one = params_.attenuation == VplParams::Attenuation::yuksel ? transfer<true> : transfer<false>;
+  if (!one(points, lights().position(l), lights().normal(l), lights().frame(l), shortest_, t)) {
+    for (int k = 0; k < n; ++k) r[k] = g[k] = b[k] = 0;
+    return;
+  }
+  // (VPL-4) flux, times both BRDFs, times the geometry. BRDFs are symmetric, so w_in serves as the light's
+  // view.
+  const BsdfArrays& receivers = static_cast<const TileBrdfs*>(points.state)->brdfs;
+  receivers.evaluate(0, n, t.x.data(), t.y.data(), t.z.data(), r, g, b);
+  emitters_.multiply_by_one(l, n, t.ex.data(), t.ey.data(), t.ez.data(), t.geometry.data(), lights().power(l),
+                            kMost, r, g, b);
+}
+
+void VplIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
   for (int j = 0; j < count; ++j) {
-    const int l = first + j;
-    float *r = &out.r[out.at(j, 0)], *g = &out.g[out.at(j, 0)], *b = &out.b[out.at(j, 0)];
-    const auto one = yuksel ? transfer<true> : transfer<false>;
-    if (!one(points, lights().position(l), lights().normal(l), lights().frame(l), shortest_, t)) {
-      for (int k = 0; k < n; ++k) r[k] = g[k] = b[k] = 0;
-      continue;
-    }
-    // (VPL-4) flux, times both BRDFs, times the geometry. BRDFs are symmetric, so w_in serves as the light's
-    // view.
-    receivers.evaluate(0, n, t.x.data(), t.y.data(), t.z.data(), r, g, b);
-    const vec3 power = lights().power(l);
-    vec3 flat;
-    if (emitters_.constant(l, &flat)) {
-      const vec3 flux = flat * power;
-      for (int k = 0; k < n; ++k) {
-        r[k] *= flux.x * t.geometry[k], g[k] *= flux.y * t.geometry[k], b[k] *= flux.z * t.geometry[k];
-      }
-      continue;
-    }
-    emitters_.evaluate_one(l, n, t.ex.data(), t.ey.data(), t.ez.data(), er.data(), eg.data(), eb.data());
-    for (int k = 0; k < n; ++k) {
-      const float geometry = t.geometry[k];
-      r[k] = min(r[k] * geometry * (er[k] * power.x), kMost);
-      g[k] = min(g[k] * geometry * (eg[k] * power.y), kMost);
-      b[k] = min(b[k] * geometry * (eb[k] * power.z), kMost);
-    }
+    const int row = out.at(j, 0);
+    gather_one(points, first + j, &out.r[row], &out.g[row], &out.b[row]);
+  }
+}
+
+void VplIntegrator::gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const {
+  alignas(64) TilePoints::Floats r, g, b;
+  for (int j = 0; j < count; ++j) {
+    gather_one(points, first + j, r.data(), g.data(), b.data());
+    for (int k = 0; k < points.padded; ++k) sums.r[k] += r[k], sums.g[k] += g[k], sums.b[k] += b[k];
   }
 }
 

@@ -34,10 +34,14 @@ class VplIntegrator : public ManyLights {
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
+  void gather_sums(const TilePoints&, int first, int count, PointSums&) const override;
   bool accounts() const override { return shortest_ > 0; }
   void account(const TilePoints&, int first, int count, const Contributions&, TileStats&) const override;
 
  private:
+  /// Radiance that light `l` sends to the camera by way of each point.
+  void gather_one(const TilePoints&, int l, float* r, float* g, float* b) const;
+
   VplParams params_;
   BsdfArrays emitters_;  ///< the lights' BRDFs, seen from where their flux came from
   float shortest_ = 0;   ///< metres: `clamp` times the scene's radius
