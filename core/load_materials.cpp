@@ -154,7 +154,7 @@ void add_entry(Loading& loading, const DatabaseEntry& entry, const std::string& 
 
 std::unique_ptr<Material> measured(Loading& loading, Fields& fields) {
   auto m = std::make_unique<MeasuredMaterial>();
-  if (!fields.has("entry")) {
+  if (!fields.find("entry")) {
     loading.measured.add(loading.resolve(fields.text("file"), fields.at("file")), fields.at("file"), m.get());
     return m;
   }
