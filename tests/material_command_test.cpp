@@ -122,7 +122,8 @@ void MaterialCommand::expect_complete(const std::string& folder, const DatabaseE
               0)
         << said_;
     double sum = 0;
-    for (const float v : read_image(image).layers.at("").pixels) {
+    const ImageFile rendered = read_image(image);
+    for (const float v : rendered.layers.at("").pixels) {
       ASSERT_TRUE(std::isfinite(v) && v >= 0);
       sum += v;
     }
