@@ -164,19 +164,26 @@ TEST_F(MaterialCommand, takes_every_kind_of_file_from_folder_to_picture) {
 TEST_F(MaterialCommand, projecting_again_keeps_what_is_current) {
   test::write_isotropic_rgl(folder_ + "/in/made", 0.4);
   const std::string db = folder_ + "/db";
-  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "3", "-o", db, "--quiet"}), 0) << said_;
+  ASSERT_EQ(
+      run({"material", "project", folder_ + "/in", "--bands", "3", "--nodes", "500", "-o", db, "--quiet"}), 0)
+      << said_;
   const std::string file = MaterialDatabase::open(db).entries().at(0).sh_file;
   const auto written = fs::last_write_time(file);
-  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "3", "-o", db, "--quiet"}), 0);
+  ASSERT_EQ(
+      run({"material", "project", folder_ + "/in", "--bands", "3", "--nodes", "500", "-o", db, "--quiet"}),
+      0);
   EXPECT_EQ(fs::last_write_time(file), written);
-  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "4", "-o", db, "--quiet"}), 0);
+  ASSERT_EQ(
+      run({"material", "project", folder_ + "/in", "--bands", "4", "--nodes", "500", "-o", db, "--quiet"}),
+      0);
   EXPECT_EQ(MaterialDatabase::open(db).entries().at(0).bands, 4);
 }
 
 TEST_F(MaterialCommand, one_broken_file_does_not_keep_the_others_out) {
   test::write_isotropic_rgl(folder_ + "/in/made", 0.4);
   write("in/broken.bsdf", "tensor_file");
-  EXPECT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "-o", folder_ + "/db", "--quiet"}),
+  EXPECT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "--nodes", "500", "-o",
+                 folder_ + "/db", "--quiet"}),
             2);
   EXPECT_NE(said_.find("broken.bsdf"), std::string::npos) << said_;
   EXPECT_EQ(MaterialDatabase::open(folder_ + "/db").entries().size(), 1u);
@@ -193,7 +200,8 @@ TEST_F(MaterialCommand, mistakes_are_told_in_one_line) {
   EXPECT_EQ(run({"list", "materials", "--database", folder_ + "/empty"}), 2);
 
   const std::string file = test::write_isotropic_rgl(folder_ + "/in/made", 0.4);
-  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "-o", folder_ + "/db", "--quiet"}),
+  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "--nodes", "500", "-o",
+                 folder_ + "/db", "--quiet"}),
             0)
       << said_;
   EXPECT_EQ(run({"material", "project", file, "--bands", "101"}), 2);
@@ -207,7 +215,8 @@ TEST_F(MaterialCommand, mistakes_are_told_in_one_line) {
 
 TEST_F(MaterialCommand, a_scenes_material_can_be_replaced_from_the_command_line) {
   test::write_isotropic_rgl(folder_ + "/in/made", 0.4);
-  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "-o", folder_ + "/db", "--quiet"}),
+  ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "2", "--nodes", "500", "-o",
+                 folder_ + "/db", "--quiet"}),
             0)
       << said_;
   json scene = {
