@@ -252,7 +252,10 @@ int show_command(const Options& options) {
   };
   canvas.text({kMargin, 10}, material.name(), kBlack);
   draw_sphere(canvas, {kMargin, 40}, by_table);
-  canvas.text({kMargin, 46 + kSphere}, fmt::format("sh: {} bands", material.max_bands()), kOrange);
+  int most = 0;  // of F', which the picture is shaded with
+  for (int k = 0; k < ShMaterial::kElevations; ++k)
+    most = std::max(most, material.row_bands(ShTable::brdf_cosine, 0, k));
+  canvas.text({kMargin, 46 + kSphere}, fmt::format("sh: up to {} bands", most), kOrange);
   if (source) {
     draw_sphere(canvas, {2 * kMargin + kSphere, 40},
                 [&](vec3 w_out, const Frame& frame) { return shade_exactly(source->bsdf, w_out, frame); });
