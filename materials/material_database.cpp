@@ -60,8 +60,8 @@ std::string projection_key(const std::string& file, const FolderOptions& options
   Hash hash;
   hash.add(read_text_file(file, "a measured material"));
   const ShProjectionOptions& p = options.projection;
-  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", ZONAL_VERSION, p.nodes, p.bands, p.share, p.most_bands, p.azimuths,
-                       p.window, p.window_size, options.half));
+  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", ZONAL_VERSION, p.nodes, p.bands, p.share, p.most_bands,
+                       p.azimuths, p.window, p.window_size, options.half));
   return hash.text();
 }
 
@@ -117,7 +117,12 @@ std::vector<std::string> MaterialDatabase::names() const {
 }
 
 std::string material_name(const std::string& file, const std::string& folder) {
-  std::string name = fs::relative(file, folder).replace_extension().generic_string();
+  // By their words alone: links stay inside the folder, as the user sees them.
+  std::string name = fs::absolute(file)
+                         .lexically_normal()
+                         .lexically_relative(fs::absolute(folder).lexically_normal())
+                         .replace_extension()
+                         .generic_string();
   constexpr std::string_view kSuffix = "_rgb";
   if (name.size() > kSuffix.size() && name.ends_with(kSuffix)) name.resize(name.size() - kSuffix.size());
   return name;
