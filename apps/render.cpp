@@ -47,6 +47,10 @@ nlohmann::json counters_json(const RenderReport& report) {
   for (const auto& [name, number] : report.pass.numbers) counters[name] = number;
   if (report.counters.total_energy > 0)
     counters["clamped_energy_share"] = report.counters.clamped_energy / report.counters.total_energy;
+  if (report.counters.skipped_pairs > 0) {
+    counters["skipped_pairs"] = report.counters.skipped_pairs;
+    counters["skipped_share_at_most"] = report.counters.skipped_bound / report.counters.skipped_total;
+  }
   return counters;
 }
 

@@ -34,7 +34,9 @@ struct Tile {
 /// Counters of one tile; summed over tiles in no particular order, so integers only.
 struct TileStats {
   uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0, light_evaluations = 0;
+  uint64_t skipped_pairs = 0;                   ///< points times lights left out by a bound on what they bring
   double clamped_energy = 0, total_energy = 0;  ///< summed per tile, then over tiles in tile order
+  double skipped_bound = 0, skipped_total = 0;  ///< at most what skipping lost; what was gathered; likewise
 };
 
 /// What a pass may know. Everything that influences pixels is in here: same Pass, same bits.

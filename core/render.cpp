@@ -34,6 +34,9 @@ void add_counters(TileStats& sum, const TileStats& tile) {
   sum.light_evaluations += tile.light_evaluations;
   sum.clamped_energy += tile.clamped_energy;
   sum.total_energy += tile.total_energy;
+  sum.skipped_pairs += tile.skipped_pairs;
+  sum.skipped_bound += tile.skipped_bound;
+  sum.skipped_total += tile.skipped_total;
 }
 
 /// Calls `on_progress` at most ten times a second, from whichever thread notices first.

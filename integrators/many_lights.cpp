@@ -7,7 +7,7 @@
 
 namespace zonal {
 
-void ManyLightsParams::visit(ParamVisitor& v, int occlusions) {
+void ManyLightsParams::visit(ParamVisitor& v, int occlusions, bool skips) {
   v.integer("lights", lights, {1, 1e8}, "lights",
             "virtual lights stored in all, after all bounces, shared among primaries by power");
   v.integer("bounces", bounces, {1, 1000}, "bounces",
@@ -26,6 +26,11 @@ void ManyLightsParams::visit(ParamVisitor& v, int occlusions) {
   std::vector<std::string> names = {"none", "center", "sphere"};
   names.resize(static_cast<size_t>(occlusions));
   v.choice("occlusion", occlusion, names, "what blocks light on its way from a virtual light");
+  if (skips)
+    v.number(
+        "skip", skip, {0, 1}, "",
+        "a light that cannot bring a tile this share of what it has received before is left out; what that "
+        "loses at most is in the statistics. 0: none");
 }
 
 namespace {
@@ -217,6 +222,43 @@ void ManyLights::gather_sums(const TilePoints& points, int first, int count, Poi
   add(points, count, c, sums);
 }
 
+/// Marks the lights of a block that are worth gathering. A light is skipped whose bound stays below `skip`
+/// times what the tile's points have received so far on average; returns how many are.
+int ManyLights::choose_lights(const TilePoints& points, const TileBounds& bounds, int first, int count,
+                              const PointSums& sums, double* lost, uint8_t* wanted) const {
+  const bool hides = horizons_hide();
+  for (int j = 0; j < count; ++j) {
+    const int l = first + j;
+    wanted[j] = !hides || bounds.sees(arrays_.position(l), arrays_.normal(l), arrays_.radius[l]);
+  }
+  if (!(shared_.skip > 0)) return 0;
+  double received = 0;
+  for (int k = 0; k < points.count; ++k) received += luminance({sums.r[k], sums.g[k], sums.b[k]});
+  const double allowed = shared_.skip * received / points.count;
+  int skipped = 0;
+  for (int j = 0; j < count; ++j) {
+    if (!wanted[j]) continue;
+    const double bound = most(points, bounds, first + j);
+    if (!(bound <= allowed)) continue;
+    *lost += bound;
+    wanted[j] = 0;
+    ++skipped;
+  }
+  return skipped;
+}
+
+/// Gathers from the lights [first, first + count), all of one block.
+void ManyLights::gather_run(const TilePoints& points, int first, int count, PointSums& sums,
+                            TileStats& stats) const {
+  stats.light_evaluations += static_cast<uint64_t>(points.count) * count;
+  if (shared_.occlusion == Occlusion::none && !accounts()) return gather_sums(points, first, count, sums);
+  Contributions c;
+  gather(points, first, count, c);
+  if (shared_.occlusion != Occlusion::none) remove_shadowed(points, first, count, c, stats);
+  if (accounts()) account(points, first, count, c, stats);
+  add(points, count, c, sums);
+}
+
 void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, const Stop& stop,
                        TileStats& stats) const {
   shade_direct(tile, radiance, samplers, stats);
@@ -230,20 +272,31 @@ void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, cons
   const std::unique_ptr<TileState> state = prepare_tile(points);
   points.state = state.get();
 
+  const TileBounds bounds(points);
   PointSums sums;
-  Contributions c;
+  double lost = 0;
   for (int first = 0; first < arrays_.count; first += kBlockLights) {
     if (stop()) return;
     const int count = std::min(kBlockLights, arrays_.count - first);
-    stats.light_evaluations += static_cast<uint64_t>(points.count) * count;
-    if (shared_.occlusion == Occlusion::none && !accounts()) {
-      gather_sums(points, first, count, sums);
-      continue;
+    std::array<uint8_t, kBlockLights> wanted;
+    stats.skipped_pairs += static_cast<uint64_t>(points.count) *
+                           choose_lights(points, bounds, first, count, sums, &lost, wanted.data());
+    // Neighbours that are wanted go together.
+    for (int begin = 0; begin < count;) {
+      if (!wanted[begin]) {
+        ++begin;
+        continue;
+      }
+      int end = begin + 1;
+      while (end < count && wanted[end]) ++end;
+      gather_run(points, first + begin, end - begin, sums, stats);
+      begin = end;
     }
-    gather(points, first, count, c);
-    if (shared_.occlusion != Occlusion::none) remove_shadowed(points, first, count, c, stats);
-    if (accounts()) account(points, first, count, c, stats);
-    add(points, count, c, sums);
+  }
+  if (shared_.skip > 0) {
+    stats.skipped_bound += lost * points.count;
+    for (int k = 0; k < points.count; ++k)
+      stats.skipped_total += luminance({sums.r[k], sums.g[k], sums.b[k]});
   }
   for (int k = 0; k < points.count; ++k)
     radiance[points.pixel[k]] += glm::max(vec3(sums.r[k], sums.g[k], sums.b[k]), vec3(0));

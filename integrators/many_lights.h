@@ -20,6 +20,7 @@
 #include "core/integrator.h"
 #include "core/params.h"
 #include "integrators/light_arrays.h"
+#include "integrators/tile_bounds.h"
 #include "integrators/tile_points.h"
 #include "lights/virtual_lights.h"
 
@@ -45,10 +46,11 @@ struct ManyLightsParams {
   Direct direct = Direct::sampled;
   int direct_samples = 1;
   Occlusion occlusion = Occlusion::center;
-  float skip = 0;  ///< share of a pixel's light
+  float skip = 0;  ///< share of a tile's light
 
-  /// `occlusions`: how many of the names none, center, sphere the method has.
-  void visit(ParamVisitor& v, int occlusions);
+  /// `occlusions`: how many of the names none, center, sphere the method has. `skips`: it bounds what a light
+  /// brings (ManyLights::most), so that it has the parameter `skip`.
+  void visit(ParamVisitor& v, int occlusions, bool skips = false);
 };
 
 /// Lights handled together: their contributions to a tile's points stay in the cache.
@@ -104,6 +106,15 @@ class ManyLights : public Integrator {
   /// The same, summed over the lights into `sums` (added to what is there), where nothing occludes. Override
   /// it where a method sums faster than by way of the block.
   virtual void gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const;
+  /// Whether lights behind a tile's points, and points behind a light, bring exactly nothing: they are then
+  /// left out before `gather`, with what their `radius` reaches around.
+  virtual bool horizons_hide() const { return false; }
+  /// At most the radiance (luminance, W m^-2 sr^-1) that the light brings by way of any of the tile's points,
+  /// shadows left out.
+  virtual float most(const TilePoints&, const TileBounds&, int light) const {
+    (void)light;
+    return kInfinity;
+  }
   /// Sees the block once shadows have zeroed what they hide: for statistics.
   virtual void account(const TilePoints&, int first, int count, const Contributions& visible,
                        TileStats&) const {
@@ -125,6 +136,9 @@ class ManyLights : public Integrator {
   int lights_that_fit(const Pass&, const Stop&);
   double seconds_a_pass(const Pass&, const Stop&) const;
   void shade_direct(const Tile&, vec3* radiance, Sampler*, TileStats&) const;
+  int choose_lights(const TilePoints&, const TileBounds&, int first, int count, const PointSums&,
+                    double* lost, uint8_t* wanted) const;
+  void gather_run(const TilePoints&, int first, int count, PointSums&, TileStats&) const;
   void remove_shadowed(const TilePoints&, int first, int count, Contributions&, TileStats&) const;
 
   ManyLightsParams shared_;

@@ -1,5 +1,6 @@
 #include "integrators/tile_points.h"
 
+#include "integrators/tile_bounds.h"
 #include "materials/microfacet.h"
 
 namespace zonal {
@@ -74,6 +75,10 @@ void TilePoints::add(int i, uint32_t random) {
 TileBrdfs::TileBrdfs(const TilePoints& points) : brdfs(points.padded) {
   for (int k = 0; k < points.padded; ++k) brdfs.set(k, points.bsdf(k), points.view[k]);
   brdfs.finish();
+  for (int k = 0; k < points.count; ++k) {
+    const Reflection most = largest_reflection(points.bsdf(k), points.view[k]);
+    flat = std::max(flat, most.flat), peak = std::max(peak, most.peak);
+  }
 }
 
 }  // namespace zonal

@@ -49,6 +49,7 @@ struct TilePoints {
 /// The points' BRDFs as arrays, padding included: what vpl and vsl keep of a tile.
 struct TileBrdfs : TileState {
   BsdfArrays brdfs;
+  float flat = 0, peak = 0;  ///< f cos of no point exceeds flat * cosine + peak, 1/sr
   explicit TileBrdfs(const TilePoints& points);
 };
 

@@ -220,5 +220,92 @@ TEST(ManyLights, lights_without_a_surface_leave_a_black_image_and_one_warning) {
   }
 }
 
+/// The methods without the test of whole tiles against horizons.
+template <class Method>
+struct Unhidden : Method {
+  using Method::Method;
+  bool horizons_hide() const override { return false; }
+};
+
+TEST(ManyLights, leaving_out_lights_behind_horizons_changes_no_bit) {
+  const Scene scene = corner({});
+  VirtualLightSet set = lights_in_the_corner(scene);
+  // Some on the walls' other sides, as multi-bounce lights are, and some below the floor.
+  for (uint32_t i = 0; i < 20; ++i) {
+    VirtualLight v = set.lights[i];
+    v.normal = -v.normal, v.frame = Frame(v.normal), v.w_in = v.normal;
+    set.lights.push_back(v);
+    v.normal = {0, 1, 0}, v.position.y -= 3;
+    set.lights.push_back(v);
+  }
+  VplParams vpl;
+  vpl.direct = ManyLightsParams::Direct::none;
+  VslParams vsl;
+  vsl.direct = ManyLightsParams::Direct::none, vsl.radius.rule = RadiusRule::metres, vsl.radius.metres = 0.3f;
+  const auto compare = [&](ManyLights& whole, ManyLights& part) {
+    whole.gather_from(set), part.gather_from(set);
+    Film all(40, 40), some(40, 40);
+    const RenderReport a = render(scene, whole, all, {.passes = 1}, {.threads = 1});
+    const RenderReport b = render(scene, part, some, {.passes = 1}, {.threads = 1});
+    EXPECT_EQ(all.radiance().pixels, some.radiance().pixels);
+    EXPECT_LT(b.counters.light_evaluations, 0.95 * double(a.counters.light_evaluations));
+  };
+  Unhidden<VplIntegrator> all_vpl(vpl);
+  VplIntegrator some_vpl(vpl);
+  compare(all_vpl, some_vpl);
+  Unhidden<VslIntegrator> all_vsl(vsl);
+  VslIntegrator some_vsl(vsl);
+  compare(all_vsl, some_vsl);
+}
+
+TEST(ManyLights, skipping_loses_no_more_than_its_bound_says) {
+  const Scene scene = test::scene_from(R"({"camera": {"position": [0, 1, 1.9], "look_at": [0, 0.9, -2]},
+    "materials": [{"name": "wall", "type": "lambert", "albedo": 0.5}, {"name": "metal", "type": "metallic_roughness", "roughness": 0.6}],
+    "objects": [{"name": "room", "type": "box", "low": [-1, 0, -9], "high": [1, 2, 2], "material": "wall"},
+                {"name": "block", "type": "box", "low": [-0.6, 0, -1], "high": [-0.2, 0.5, -0.6], "material": "metal"}],
+    "lights": [{"type": "point", "position": [0.3, 1.2, -1], "intensity": 9}]})");
+  const auto run = [&](const char* method, float skip, TileStats* stats) {
+    const nlohmann::json settings = {{"lights", 800}, {"direct", "none"}, {"skip", skip}};
+    const auto integrator = find_integrator(method, "").make(settings, "", nullptr);
+    Film film(64, 64);
+    *stats = render(scene, *integrator, film, {.passes = 1}, {.seed = 4}).counters;
+    return film.radiance();
+  };
+  for (const auto& [method, skip] : {std::pair("vpl", 2e-3f), std::pair("vsl", 3e-3f)}) {
+    TileStats none, some;
+    const Image all = run(method, 0, &none), fewer = run(method, skip, &some);
+    EXPECT_EQ(none.skipped_pairs, 0u);
+    EXPECT_GT(double(some.skipped_pairs), 0.03 * double(none.light_evaluations)) << method;
+    double lost = 0, total = 0;
+    for (size_t i = 0; i < all.pixels.size(); i += 3) {
+      const vec3 whole(all.pixels[i], all.pixels[i + 1], all.pixels[i + 2]);
+      const vec3 part(fewer.pixels[i], fewer.pixels[i + 1], fewer.pixels[i + 2]);
+      EXPECT_GE(luminance(whole - part), -1e-5 * luminance(whole)) << method;  // sums in another order
+      lost += luminance(whole - part), total += luminance(whole);
+    }
+    EXPECT_GT(lost, 0) << method;
+    EXPECT_LE(lost, some.skipped_bound) << method;
+    EXPECT_LE(some.skipped_bound, 0.5 * some.skipped_total) << method;
+    EXPECT_NEAR(some.skipped_total, total - lost, 1e-4 * total) << method;
+  }
+}
+
+TEST(ManyLights, no_direction_reflects_more_than_the_bound) {
+  const auto all = materials();
+  for (uint32_t i = 0; i < 400; ++i) {
+    const Bsdf bsdf = all[i % all.size()]->at({});
+    const BsdfContext view = prepare(bsdf, random_direction(5 * i));
+    const Reflection bound = largest_reflection(bsdf, view);
+    const vec3 o = view.w_out;
+    for (uint32_t j = 0; j < 60; ++j) {
+      vec3 in = random_direction(1000 * i + j);
+      if (j % 2) in = glm::normalize(vec3(-o.x, -o.y, o.z) + 0.3f * unit_float(hash32(i, j)) * in);
+      if (j % 5 == 0) in = glm::normalize(vec3(-o.x, -o.y, 0.01f * float(j + 1)));
+      const vec3 f = evaluate(bsdf, view, in);
+      EXPECT_LE(max_component(f) * in.z, bound.most(in.z) * 1.0001f) << "material " << i % all.size();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace zonal

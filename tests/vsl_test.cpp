@@ -188,6 +188,33 @@ TEST(Vsl, frozen_over_a_matt_floor_is_vpl_while_the_cap_is_above_the_horizon) {
   for (size_t i = 0; i < image.pixels.size(); ++i) EXPECT_NEAR(image.pixels[i] / truth.pixels[i], 1, 2e-3);
 }
 
+TEST(Vsl, receives_in_a_closed_box_all_of_the_light_as_spheres_shrink) {
+  // The same lights as points bring all of it; spheres lose what reaches behind walls and what lies around a
+  // point.
+  const Scene scene =
+      test::scene_from(R"({"camera": {"position": [0, 1, 1.9], "look_at": [0, 0.9, -2], "vertical_fov": 80},
+    "materials": [{"name": "wall", "type": "lambert", "albedo": 0.6}],
+    "objects": [{"name": "room", "type": "box", "low": [-1, 0, -2], "high": [1, 2, 2], "material": "wall"}],
+    "lights": [{"type": "point", "position": [0.3, 1.2, 0.4], "intensity": 9}]})");
+  const auto sum = [&](const char* method, nlohmann::json settings) {
+    settings.update({{"lights", 200}, {"direct", "none"}, {"occlusion", "none"}});
+    double total = 0;
+    for (const float v :
+         test::render_with(scene, method, {.settings = settings.dump(), .width = 24, .height = 24}).pixels)
+      total += v;
+    return total;
+  };
+  const double all = sum("vpl", nlohmann::json::object());
+  double last = 1;
+  for (const float factor : {1.0f, 0.3f, 0.1f, 0.01f}) {
+    const double deficit = 1 - sum("vsl", {{"radius_factor", factor}}) / all;
+    EXPECT_LT(deficit, last) << "factor " << factor;
+    EXPECT_GT(deficit, -0.01) << "factor " << factor;
+    last = deficit;
+  }
+  EXPECT_NEAR(last, 0, 2e-3);
+}
+
 TEST(Vsl, is_the_same_on_any_number_of_threads_and_another_for_another_seed) {
   const Scene scene = test::scene_from(R"({"camera": {"position": [0, 1, 1.9], "look_at": [0, 0.9, -2]},
     "materials": [{"name": "wall", "type": "coated", "roughness": 0.5}],

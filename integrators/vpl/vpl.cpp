@@ -52,6 +52,22 @@ void VplIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightA
   emitters_ = BsdfArrays(static_cast<int>(set.lights.size()));
   for (int j = 0; j < emitters_.count(); ++j) emitters_.set(j, arrays.bsdf[j], arrays.view[j], lobes);
   emitters_.finish();
+  largest_.clear();
+  if (shared().skip > 0)
+    for (int j = 0; j < emitters_.count(); ++j)
+      largest_.push_back(largest_reflection(arrays.bsdf[j], arrays.view[j], lobes));
+}
+
+float VplIntegrator::most(const TilePoints& points, const TileBounds& bounds, int light) const {
+  const auto reach = bounds.reach(lights().position(light), lights().normal(light), 0);
+  const float d2 = reach.distance * reach.distance;
+  const float attenuation = params_.attenuation == VplParams::Attenuation::yuksel
+                                ? vpl_yuksel(d2, shortest_)
+                                : vpl_inverse_square(d2, shortest_);
+  const auto& tile = static_cast<const TileBrdfs&>(*points.state);
+  const Reflection receiver{tile.flat, tile.peak};
+  return luminance(lights().power(light)) * largest_[light].most(reach.cos_light) *
+         receiver.most(reach.cos_point) * attenuation;
 }
 
 std::unique_ptr<TileState> VplIntegrator::prepare_tile(const TilePoints& points) const {

@@ -16,7 +16,7 @@ struct VplParams : ManyLightsParams {
   float clamp = 0;
 
   void visit(ParamVisitor& v) {
-    ManyLightsParams::visit(v, 2);
+    ManyLightsParams::visit(v, 2, true);
     v.choice("emission", emission, {"brdf", "diffuse"},
              "brdf: a virtual light reflects by the whole BRDF of its surface; diffuse: by its diffuse part");
     v.choice("attenuation", attenuation, {"clamp", "yuksel"},
@@ -35,6 +35,8 @@ class VplIntegrator : public ManyLights {
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
   void gather_sums(const TilePoints&, int first, int count, PointSums&) const override;
+  bool horizons_hide() const override { return true; }
+  float most(const TilePoints&, const TileBounds&, int light) const override;
   bool accounts() const override { return shortest_ > 0; }
   void account(const TilePoints&, int first, int count, const Contributions&, TileStats&) const override;
 
@@ -43,8 +45,9 @@ class VplIntegrator : public ManyLights {
   void gather_one(const TilePoints&, int l, float* r, float* g, float* b) const;
 
   VplParams params_;
-  BsdfArrays emitters_;  ///< the lights' BRDFs, seen from where their flux came from
-  float shortest_ = 0;   ///< metres: `clamp` times the scene's radius
+  BsdfArrays emitters_;              ///< the lights' BRDFs, seen from where their flux came from
+  std::vector<Reflection> largest_;  ///< bounds of the lights' f cos
+  float shortest_ = 0;               ///< metres: `clamp` times the scene's radius
 };
 
 }  // namespace zonal

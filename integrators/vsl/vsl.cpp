@@ -193,6 +193,21 @@ void VslIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightA
   emitters_ = BsdfArrays(static_cast<int>(set.lights.size()));
   for (int j = 0; j < emitters_.count(); ++j) emitters_.set(j, arrays.bsdf[j], arrays.view[j]);
   emitters_.finish();
+  largest_.clear();
+  if (shared().skip > 0)
+    for (int j = 0; j < emitters_.count(); ++j)
+      largest_.push_back(largest_reflection(arrays.bsdf[j], arrays.view[j]));
+}
+
+float VslIntegrator::most(const TilePoints& points, const TileBounds& bounds, int light) const {
+  const float radius = lights().radius[light];
+  const auto reach = bounds.reach(lights().position(light), lights().normal(light), radius);
+  float per_radius2;
+  vsl_cone(reach.distance * reach.distance, radius, per_radius2);
+  const auto& tile = static_cast<const VslTile&>(*points.state);
+  const Reflection receiver{tile.flat, tile.peak};
+  return luminance(lights().power(light)) * largest_[light].most(reach.cos_light) *
+         receiver.most(reach.cos_point) * 2.0f * per_radius2;
 }
 
 std::unique_ptr<TileState> VslIntegrator::prepare_tile(const TilePoints& points) const {

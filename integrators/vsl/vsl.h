@@ -19,7 +19,7 @@ struct VslParams : ManyLightsParams {
   bool frozen = false;
 
   void visit(ParamVisitor& v) {
-    ManyLightsParams::visit(v, 3);
+    ManyLightsParams::visit(v, 3, true);
     v.integer("samples", samples, {1, 4096}, "samples", "directions a point and light");
     v.choice("sampling", sampling, {"cone", "brdf", "mis"},
              "directions drawn from the light's cone, from the point's BRDF, or half of each by the balance "
@@ -37,12 +37,16 @@ class VslIntegrator : public ManyLights {
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
 
+  bool horizons_hide() const override { return true; }
+  float most(const TilePoints&, const TileBounds&, int light) const override;
+
  private:
   int cone_samples() const;
   int brdf_samples() const { return params_.samples - cone_samples(); }
 
   VslParams params_;
-  BsdfArrays emitters_;  ///< the lights' BRDFs, seen from where their flux came from
+  BsdfArrays emitters_;              ///< the lights' BRDFs, seen from where their flux came from
+  std::vector<Reflection> largest_;  ///< bounds of the lights' f cos
   /// Directions of the cone before each pair's own turn and shift: a lattice over the unit square.
   std::vector<float> lattice_u_, lattice_c_, lattice_s_;
 };
