@@ -157,6 +157,19 @@ json group_json(const SweepPlan& plan, const CellStore& store, const std::vector
   return group;
 }
 
+/// A reference's settings of `path` in words.
+std::string transport_text(const json& settings) {
+  const int most = settings.value("max_bounces", -1), fewest = settings.value("min_bounces", 0);
+  std::string text = most < 0    ? "all bounces"
+                     : most == 0 ? "direct light"
+                                 : fmt::format("up to {} {}", most, most == 1 ? "bounce" : "bounces");
+  if (fewest == 1 && most != 0) text += ", no direct light";
+  if (fewest > 1) text += fmt::format(", from bounce {} on", fewest);
+  if (settings.value("occlusion", "") == "none") text += ", nothing blocks indirect light";
+  if (settings.value("direct_occlusion", "") == "none") text += ", nothing blocks direct light";
+  return text;
+}
+
 json references_json(const SweepPlan& plan, const CellStore& store, const json& cells) {
   std::map<std::string, json> found;
   for (size_t i = 0; i < plan.cells.size(); ++i) {
