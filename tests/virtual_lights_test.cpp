@@ -6,7 +6,6 @@
 
 #include <cstring>
 
-#include "lights/virtual_light_radius.h"
 #include "tests/light_support.h"
 
 namespace zonal {
@@ -355,63 +354,6 @@ TEST(virtual_lights, know_their_neighbours_in_the_map) {
     const vec3 p = set.lights[i].position - vec3(0.2f, 0, 0.1f);
     if (glm::length(vec2(p.x, p.z)) + side < std::tan(0.3f))
       EXPECT_NEAR(set.lights[i].footprint, side * side, 0.15f * side * side);
-  }
-}
-
-TEST(virtual_light_radius, of_each_rule_is_about_the_diagonal_spacing_on_an_even_map) {
-  // A far spot with a narrow cone on a plane across it: cells are equal squares of this size.
-  std::vector<std::unique_ptr<Light>> lights;
-  auto far = spot({0, 20, 0}, {0, -1, 0}, vec3(5));
-  far->cone = {0.1f, 0.1f};
-  lights.push_back(std::move(far));
-  const Scene scene = scene_of({{{-6, 0, -6}, {0, 0, 12}, {12, 0, 0}}}, std::move(lights));
-  const VirtualLightSet set =
-      make_virtual_lights(scene, {.lights = 800, .block_texels = 3, .placement = Options::center}, {});
-  const double spacing = 2 * 20 * std::tan(0.1) / set.columns;
-  const auto median = [&](RadiusRule rule, float factor = 1) {
-    auto r = virtual_light_radii(set, {.rule = rule, .factor = factor}, scene.bounds().radius);
-    std::nth_element(r.begin(), r.begin() + r.size() / 2, r.end());
-    return r[r.size() / 2];
-  };
-  const double diagonal = std::sqrt(2) * spacing;
-  EXPECT_NEAR(median(RadiusRule::field_of_view), diagonal, 0.02 * diagonal);
-  EXPECT_EQ(median(RadiusRule::automatic), median(RadiusRule::field_of_view));
-  // The tenth neighbour of a square lattice is 2 spacings away: 2 sqrt(2 pi/10) = 1.585 of them.
-  EXPECT_NEAR(median(RadiusRule::density), 1.585 * spacing, 0.02 * spacing);
-  // The mean of 4 sides and 4 diagonals, nearly equal depths: (1 + sqrt 2)/2.
-  EXPECT_NEAR(median(RadiusRule::neighbours), 0.5 * (1 + std::sqrt(2)) * spacing, 0.05 * spacing);
-  EXPECT_NEAR(median(RadiusRule::density, 1.5f), 1.5 * 1.585 * spacing, 0.03 * spacing);
-}
-
-TEST(virtual_light_radius, is_positive_where_lights_share_a_place_or_are_alone) {
-  VirtualLightSet set;
-  for (const auto rule :
-       {RadiusRule::automatic, RadiusRule::field_of_view, RadiusRule::density, RadiusRule::neighbours}) {
-    set.lights.clear();
-    EXPECT_TRUE(virtual_light_radii(set, {.rule = rule}, 2).empty());
-    set.lights.resize(1);
-    set.lights[0].primary_distance = 3;
-    EXPECT_FLOAT_EQ(virtual_light_radii(set, {.rule = rule}, 2)[0], 1.5f);
-    set.lights.resize(30);
-    for (const float r : virtual_light_radii(set, {.rule = rule}, 2)) EXPECT_FLOAT_EQ(r, 2e-6f);
-  }
-}
-
-TEST(virtual_light_radius, finds_the_same_nearest_distances_as_a_search_of_all) {
-  std::vector<vec3> points;
-  for (int i = 0; i < 700; ++i) {
-    vec3 p(random_pair(), random_pair().x);
-    if (i % 5 == 0) p.y = 0.25f;  // many on one plane
-    if (i % 50 == 0 && i) p = points[i / 2];
-    points.push_back(p);
-  }
-  const auto found = nearest_distances(points, 10);
-  for (size_t i = 0; i < points.size(); ++i) {
-    std::vector<float> all;
-    for (size_t j = 0; j < points.size(); ++j)
-      if (j != i) all.push_back(glm::distance(points[i], points[j]));
-    std::nth_element(all.begin(), all.begin() + 9, all.end());
-    EXPECT_FLOAT_EQ(found[i], all[9]) << i;
   }
 }
 
