@@ -186,8 +186,7 @@ json references_json(const SweepPlan& plan, const CellStore& store, const json& 
       found[key] = {{"id", key},
                     {"scene", plan.scenes[plan.cells[i].scene].id},
                     {"integrator", requests[k].integrator},
-                    {"transport", requests[k].settings.empty() ? "all bounces, with occlusion"
-                                                               : requests[k].settings.dump()},
+                    {"transport", transport_text(requests[k].settings)},
                     {"parameters", requests[k].settings},
                     {"passes", record->value("passes", json())},
                     {"seconds", record->value("seconds", json())},
