@@ -4,13 +4,12 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_scheduler_observer.h>
 #include <sched.h>
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <optional>
 #include <mutex>
+#include <optional>
 
 namespace zonal {
 namespace {
@@ -18,7 +17,9 @@ namespace {
 /// Denormals cost a hundred cycles each and carry nothing a picture shows: they are flushed inside tiles.
 class FlushDenormals {
  public:
-  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040); }  // flush-to-zero, denormals-are-zero
+  FlushDenormals() : saved_(_mm_getcsr()) {
+    _mm_setcsr(saved_ | 0x8040);
+  }  // flush-to-zero, denormals-are-zero
   ~FlushDenormals() { _mm_setcsr(saved_); }
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
@@ -42,7 +43,8 @@ void add_counters(TileStats& sum, const TileStats& tile) {
 /// Calls `on_progress` at most ten times a second, from whichever thread notices first.
 class ProgressGate {
  public:
-  explicit ProgressGate(const std::function<void(const Progress&)>& on_progress) : on_progress_(on_progress) {}
+  explicit ProgressGate(const std::function<void(const Progress&)>& on_progress)
+      : on_progress_(on_progress) {}
   bool wanted() const { return static_cast<bool>(on_progress_); }
   void offer(const Progress& progress) {
     std::unique_lock lock(mutex_, std::try_to_lock);
@@ -64,20 +66,18 @@ struct TileGrid {
   int count() const { return columns * rows; }
 };
 
-/// Keeps the threads of an arena each on a core of its own, as long as it lives. The caller's thread is one of them and
-/// gets its freedom back.
-class Pinning : public oneapi::tbb::task_scheduler_observer {
+/// Keeps each thread of an arena on a core of its own, as long as it lives; the caller's thread gets its
+/// freedom back.
+class Pinning {
  public:
-  explicit Pinning(oneapi::tbb::task_arena& arena) : task_scheduler_observer(arena) {
-    sched_getaffinity(0, sizeof allowed_, &allowed_);
-    observe(true);
-  }
-  ~Pinning() override {
-    observe(false);
-    sched_setaffinity(0, sizeof allowed_, &allowed_);
-  }
-  void on_scheduler_entry(bool) override {
-    // The arena's slot picks among the cores this process may use.
+  Pinning() { sched_getaffinity(0, sizeof allowed_, &allowed_); }
+  ~Pinning() { sched_setaffinity(0, sizeof allowed_, &allowed_); }
+
+  /// Called by each thread at work: the arena's slot picks among the cores this process may use.
+  void hold() const {
+    static thread_local const Pinning* held = nullptr;
+    if (held == this) return;
+    held = this;
     const int slot = oneapi::tbb::this_task_arena::current_thread_index();
     int left = slot % std::max(1, CPU_COUNT(&allowed_));
     for (int core = 0; core < CPU_SETSIZE; ++core) {
@@ -112,7 +112,8 @@ void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t
     }
   }
   // Trace first, look up afterwards: the tree stays in cache, then the geometry does.
-  scene.look_up(tile->hits.data(), tile->directions.data(), tile->count, tile->surfaces.data(), tile->bsdfs.data());
+  scene.look_up(tile->hits.data(), tile->directions.data(), tile->count, tile->surfaces.data(),
+                tile->bsdfs.data());
 }
 
 RenderReport render(const Scene& scene, Integrator& integrator, Film& film, const Budget& budget,
@@ -129,7 +130,7 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
   oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   oneapi::tbb::task_arena arena(threads);
   std::optional<Pinning> pinning;
-  if (options.pin) pinning.emplace(arena);
+  if (options.pin) pinning.emplace();
 
   const TileGrid grid(film.width(), film.height());
   std::vector<TileStats> tile_stats(grid.count());
@@ -142,9 +143,10 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
     // The first pass is finished even when it is late: a whole picture is worth more than a punctual half.
     if (timed && index > 0 && left <= 0) break;
     const auto start = Clock::now();
-    const auto deadline = timed && index > 0
-                              ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left))
-                              : Clock::time_point::max();
+    const auto deadline =
+        timed && index > 0
+            ? start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(left))
+            : Clock::time_point::max();
     const Stop stop(options.stop, deadline);
     if (stop.asked()) {
       report.interrupted = true;
@@ -166,12 +168,13 @@ RenderReport render(const Scene& scene, Integrator& integrator, Film& film, cons
           cut = true;
           return;
         }
+        if (pinning) pinning->hold();
         const FlushDenormals flush;
         Tile tile;
         std::array<Sampler, kTilePixels> samplers;
         std::array<vec3, kTilePixels> radiance;
-        trace_tile(scene, camera, {t % grid.columns * 8, t / grid.columns * 8}, options.seed, index, jitter, &tile,
-                   samplers.data());
+        trace_tile(scene, camera, {t % grid.columns * 8, t / grid.columns * 8}, options.seed, index, jitter,
+                   &tile, samplers.data());
         tile_stats[t].camera_rays += tile.count;
         integrator.shade(tile, radiance.data(), samplers.data(), stop, tile_stats[t]);
         if (stop()) {  // the tile may be unfinished
