@@ -12,13 +12,14 @@
 
 #include "core/error.h"
 #include "core/scene_loader.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kTests = fs::path(ZONAL_SOURCE_DIR) / "tests";
+const fs::path kTests = fs::path(test::source_dir()) / "tests";
 
 /// What loading ends with, folder names removed; "" when the scene loads.
 template <class Load>

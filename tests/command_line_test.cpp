@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/image.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -22,7 +23,7 @@ struct Outcome {
 };
 
 Outcome zonal(const std::string& arguments) {
-  FILE* pipe = popen((std::string(ZONAL_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = popen((test::program() + " " + arguments + " 2>&1").c_str(), "r");
   Outcome run;
   std::array<char, 4096> buffer;
   while (size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) run.out.append(buffer.data(), n);
@@ -45,13 +46,16 @@ class CommandLine : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder); }
   std::string path(const std::string& name) const { return (folder / name).string(); }
-  std::string render(const std::string& rest) const { return "render " + scene.string() + " --quiet " + rest; }
+  std::string render(const std::string& rest) const {
+    return "render " + scene.string() + " --quiet " + rest;
+  }
 
   void expect_refused(const std::string& arguments, const std::vector<std::string>& words) const {
     const Outcome run = zonal(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments << "\n" << run.out;
     EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), 1) << "one line expected:\n" << run.out;
-    for (const std::string& word : words) EXPECT_NE(run.out.find(word), std::string::npos) << word << " missing in: " << run.out;
+    for (const std::string& word : words)
+      EXPECT_NE(run.out.find(word), std::string::npos) << word << " missing in: " << run.out;
   }
 
   fs::path folder, scene;
@@ -67,19 +71,26 @@ TEST_F(CommandLine, renders_an_exr_with_layers_and_stats) {
   const auto stats = nlohmann::json::parse(std::ifstream(path("a.json")));
   EXPECT_EQ(stats["passes"], 2);
   EXPECT_EQ(stats["counters"]["camera_rays"], 2 * 32 * 18);
-  for (const char* key : {"load", "begin_pass", "radiance", "output"}) EXPECT_TRUE(stats["seconds"].contains(key)) << key;
-  for (const char* key : {"scene", "integrator", "parameters", "seed", "threads", "peak_memory_bytes", "version", "compiler", "cpu", "gpu"})
+  for (const char* key : {"load", "begin_pass", "radiance", "output"})
+    EXPECT_TRUE(stats["seconds"].contains(key)) << key;
+  for (const char* key : {"scene", "integrator", "parameters", "seed", "threads", "peak_memory_bytes",
+                          "version", "compiler", "cpu", "gpu"})
     EXPECT_TRUE(stats.contains(key)) << key;
 }
 
 TEST_F(CommandLine, a_timed_render_can_be_had_again_with_its_number_of_passes) {
   for (const std::string method : {"path", "vpl"}) {
-    ASSERT_EQ(zonal(render("--integrator " + method + " --time 0.3 -o " + path("t.exr") + " --stats " + path("t.json"))).exit_code, 0);
+    ASSERT_EQ(zonal(render("--integrator " + method + " --time 0.3 -o " + path("t.exr") + " --stats " +
+                           path("t.json")))
+                  .exit_code,
+              0);
     const auto stats = nlohmann::json::parse(std::ifstream(path("t.json")));
     const std::string repeat = stats["repeat"];
-    const Outcome again = zonal(render("--integrator " + method + " --threads 1 -o " + path("u.exr") + " " + repeat));
+    const Outcome again =
+        zonal(render("--integrator " + method + " --threads 1 -o " + path("u.exr") + " " + repeat));
     ASSERT_EQ(again.exit_code, 0) << again.out;
-    EXPECT_EQ(read_image(path("t.exr")).layers.at("").pixels, read_image(path("u.exr")).layers.at("").pixels) << repeat;
+    EXPECT_EQ(read_image(path("t.exr")).layers.at("").pixels, read_image(path("u.exr")).layers.at("").pixels)
+        << repeat;
   }
 }
 
@@ -87,7 +98,8 @@ TEST_F(CommandLine, the_first_interrupt_ends_the_render_and_keeps_what_it_had) {
   const std::string image = path("stopped.exr");
   const pid_t child = fork();
   if (child == 0) {
-    execl(ZONAL_PROGRAM, ZONAL_PROGRAM, "render", scene.c_str(), "--passes", "10000000", "--quiet", "-o", image.c_str(), nullptr);
+    execl(test::program().c_str(), "zonal", "render", scene.c_str(), "--passes", "10000000", "--quiet", "-o",
+          image.c_str(), nullptr);
     _exit(99);
   }
   usleep(1'500'000);  // long enough for a pass; the picture is tiny

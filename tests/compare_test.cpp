@@ -13,6 +13,7 @@
 #include "core/metrics.h"
 #include "core/reference.h"
 #include "core/sampling.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -53,7 +54,8 @@ class Compare : public testing::Test {
   }
   /// Runs the program in the folder; stdout and stderr together.
   std::string zonal(const std::string& arguments, int expected_exit = 0) const {
-    const std::string command = "cd " + folder.string() + " && " ZONAL_PROGRAM " " + arguments + " 2>&1";
+    const std::string command =
+        "cd " + folder.string() + " && " + test::program() + " " + arguments + " 2>&1";
     FILE* pipe = popen(command.c_str(), "r");
     std::string out;
     std::array<char, 4096> buffer;

@@ -18,6 +18,7 @@
 #include "sweep/process.h"
 #include "tests/gpu_shmat.h"
 #include "tests/measured_files.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -36,7 +37,7 @@ class MaterialCommand : public testing::Test {
 
   /// Exit code of the program; what it complained of is in `said_`.
   int run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), ZONAL_PROGRAM);
+    arguments.insert(arguments.begin(), test::program());
     const ProcessResult result = run_process(arguments, nullptr);
     said_ = result.last_line;
     return result.signal ? -result.signal : result.exit_code;

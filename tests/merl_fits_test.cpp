@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "materials/merl_fits.h"
 #include "tests/merl_support.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -143,7 +144,8 @@ TEST_F(MerlFitFiles, wrong_networks_are_refused_by_line) {
 
 /// Runs `zonal material merl ...` in the folder; what it printed, then its exit code.
 std::string run_command(const TemporaryFolder& folder, const std::string& arguments) {
-  const std::string line = "cd " + folder / "" + " && " ZONAL_PROGRAM " material merl " + arguments + " 2>&1";
+  const std::string line =
+      "cd " + folder / "" + " && " + test::program() + " material merl " + arguments + " 2>&1";
   FILE* pipe = popen(line.c_str(), "r");
   std::string out;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += char(c);

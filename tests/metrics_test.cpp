@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/error_map.h"
 #include "core/sampling.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -220,7 +221,7 @@ Image picture(int width, int height, Formula formula) {
 }
 
 TEST(Ssim, agrees_with_scikit_image) {
-  const auto golden = nlohmann::json::parse(std::ifstream(ZONAL_SOURCE_DIR "/tests/golden/ssim.json"));
+  const auto golden = nlohmann::json::parse(std::ifstream(test::source_dir() + "/tests/golden/ssim.json"));
   const int width = golden["width"], height = golden["height"];
   const Image truth = picture(width, height, pattern);
   const std::map<std::string, Image> pictures = {{"noisy", picture(width, height, noisy)},

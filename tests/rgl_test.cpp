@@ -15,6 +15,7 @@
 #include "tests/bsdf_cases.h"
 #include "tests/bsdf_quadrature.h"
 #include "tests/measured_files.h"
+#include "tests/paths.h"
 #include "tests/slow_rgl.h"
 
 namespace zonal {
@@ -223,7 +224,8 @@ TEST(Rgl, stored_quarters_and_halves_are_mirrored) {
 
 TEST(Rgl, agrees_with_mitsuba) {
   if (real_files().empty()) GTEST_SKIP() << "set ZONAL_DATA to the folder that has materials/rgl";
-  const auto golden = nlohmann::json::parse(std::ifstream(ZONAL_SOURCE_DIR "/tests/golden/rgl_mitsuba.json"));
+  const auto golden =
+      nlohmann::json::parse(std::ifstream(test::source_dir() + "/tests/golden/rgl_mitsuba.json"));
   std::map<std::string, std::unique_ptr<RglBrdf>> brdfs;
   for (const std::string& file : real_files())
     brdfs[std::filesystem::path(file).filename().string()] = std::make_unique<RglBrdf>(TensorFile(file));

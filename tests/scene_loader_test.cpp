@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "tests/paths.h"
 #include "tests/support.h"
 
 namespace zonal {
@@ -33,8 +34,7 @@ bool noted(const Scene& scene, const std::string& text) {
 
 TEST(scene_loader, a_scene_that_uses_every_key_loads) {
   SceneSettings settings;
-  const Scene scene =
-      load_scene(std::string(ZONAL_SOURCE_DIR) + "/tests/scene_files/everything.json", {}, &settings);
+  const Scene scene = load_scene(test::source_dir() + "/tests/scene_files/everything.json", {}, &settings);
   EXPECT_EQ(scene.name(), "every key there is");
   EXPECT_EQ(settings.passes, 4);
   EXPECT_EQ(nlohmann::json::parse(settings.integrator_json),
@@ -64,8 +64,7 @@ TEST(scene_loader, every_bundled_scene_loads_or_asks_for_the_data_folder) {
   const std::string kept = before ? before : "";
   unsetenv("ZONAL_DATA");
   size_t loaded = 0;
-  for (const auto& entry :
-       std::filesystem::recursive_directory_iterator(std::string(ZONAL_SOURCE_DIR) + "/scenes")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_dir() + "/scenes")) {
     const std::string file = entry.path().string();
     if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
     if (file.find("/sweeps/") != std::string::npos) continue;  // those are comparisons

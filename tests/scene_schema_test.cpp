@@ -14,6 +14,7 @@
 #include "core/scene_loader.h"
 #include "lights/light.h"
 #include "materials/material.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -22,7 +23,7 @@ using nlohmann::json;
 using Keys = std::set<std::string>;
 
 json read_json(const std::string& path) {
-  return json::parse(std::ifstream(std::string(ZONAL_SOURCE_DIR) + "/" + path));
+  return json::parse(std::ifstream(test::source_dir() + "/" + path));
 }
 
 const json& schema() {
@@ -55,7 +56,7 @@ Keys loader_keys(json scene, const std::string& pointer) {
   if (!scene.contains("camera")) scene["camera"] = {{"position", {0, 0, 5}}, {"look_at", {0, 0, 0}}};
   scene[json::json_pointer(pointer)][kUnknown] = 1;
   try {
-    parse_scene(scene.dump(), std::string(ZONAL_SOURCE_DIR) + "/tests/scene_files/probe.json");
+    parse_scene(scene.dump(), test::source_dir() + "/tests/scene_files/probe.json");
     ADD_FAILURE() << pointer << ": an unknown key was accepted";
   } catch (const SceneError& error) {
     const std::string text = error.what(), head = "(there is: ";
@@ -95,7 +96,8 @@ TEST(schema, materials) {
       continue;
     }
     json scene = {{"materials", {{{"name", "m"}, {"type", kind.name}}}}};
-    // Its file is required, and read only once the rest of the scene has been found right: any existing one will do.
+    // Its file is required, and read only once the rest of the scene has been found right: any existing one
+    // will do.
     if (kind.name == "measured") scene["materials"][0]["file"] = "flat.png";
     expect_same({"material_" + kind.name}, scene, "/materials/0");
   }
@@ -184,7 +186,7 @@ TEST(schema, the_example_of_all_keys_has_them_all) {
     if (!definition.contains("properties")) continue;
     for (const std::string& key : keys_of(definition["properties"])) {
       if (key == "from" || key == "object") continue;  // instead of "position" and "look_at"
-      if (key == "entry") continue;                     // instead of "file"
+      if (key == "entry") continue;                    // instead of "file"
       EXPECT_TRUE(used.contains(key)) << name << "." << key;
     }
   }

@@ -15,6 +15,7 @@
 
 namespace zonal {
 #include "sh/basis.glsl"
+#include "tests/paths.h"
 
 namespace {
 
@@ -22,7 +23,7 @@ using sh::Vec3;
 using Json = nlohmann::json;
 
 Json golden(const char* name) {
-  std::ifstream in(std::string(ZONAL_SOURCE_DIR "/tests/golden/") + name);
+  std::ifstream in((zonal::test::source_dir() + "/tests/golden/") + name);
   return Json::parse(in)["cases"];
 }
 

@@ -14,6 +14,7 @@
 #include "materials/sh_projector.h"
 #include "materials/shmat_format.h"
 #include "tests/gpu_shmat.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -228,7 +229,7 @@ TEST(ShMaterial, the_shader_text_is_glsl) {
   if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "glslangValidator is not installed";
   const std::string file = (std::filesystem::path(::testing::TempDir()) / "shmat_reader.comp").string();
-  std::ifstream text(std::string(ZONAL_SOURCE_DIR) + "/materials/sh_material.glsl");
+  std::ifstream text(test::source_dir() + "/materials/sh_material.glsl");
   std::ofstream shader(file);
   shader << "#version 430\nlayout(local_size_x = 1) in;\n#define KERNEL\n#define OUT(type) out type\n"
          << "layout(std430, binding = 0) buffer Words { uint words[]; };\nlayout(std430, binding = 1) buffer "

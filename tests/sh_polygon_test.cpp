@@ -9,6 +9,7 @@
 #include "sh/polygon.h"
 #include "sh/simple_lights.h"
 #include "sh/solid_angle.h"
+#include "tests/paths.h"
 
 namespace zonal::sh {
 namespace {
@@ -18,7 +19,7 @@ using dvec3 = Vec3<double>;
 using Polygon = std::vector<dvec3>;
 
 json golden(const std::string& name) {
-  std::ifstream file(std::string(ZONAL_SOURCE_DIR) + "/tests/golden/" + name + ".json");
+  std::ifstream file(test::source_dir() + "/tests/golden/" + name + ".json");
   EXPECT_TRUE(file) << name;
   return json::parse(file);
 }

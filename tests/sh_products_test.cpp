@@ -15,6 +15,7 @@
 #include "sh/convolution.h"
 #include "sh/product_table.h"
 #include "sh/rotation.h"
+#include "tests/paths.h"
 
 namespace zonal::sh {
 namespace {
@@ -29,7 +30,7 @@ using namespace zonal;
 using Dvec = std::vector<double>;
 
 nlohmann::json golden() {
-  std::ifstream file(ZONAL_SOURCE_DIR "/tests/golden/products.json");
+  std::ifstream file(test::source_dir() + "/tests/golden/products.json");
   return nlohmann::json::parse(file);
 }
 
@@ -85,8 +86,9 @@ void check_golden(double tolerance) {
                 2 * tolerance);  // (4.4)
   }
 }
-// Table entries are sums of some 300 values of order 10 and keep 1e-14; a coefficient at 9 bands adds some 300 of them
-// times numbers of order 0.3: sqrt(300) * 0.3 * 1e-14 = 5e-14. Twice that, the tolerance of docs/verify.md.
+// Table entries are sums of some 300 values of order 10 and keep 1e-14; a coefficient at 9 bands adds some
+// 300 of them times numbers of order 0.3: sqrt(300) * 0.3 * 1e-14 = 5e-14. Twice that, the tolerance of
+// docs/verify.md.
 TEST(sh_products, golden_vectors_in_double) {
   check_golden<double>(1e-13);
 }

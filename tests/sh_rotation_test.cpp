@@ -11,6 +11,7 @@
 
 #include "core/glsl.h"
 #include "sh/zonal_factorization.h"
+#include "tests/paths.h"
 
 namespace zonal::sh {
 namespace {
@@ -23,7 +24,7 @@ using namespace zonal;
 using Dvec = std::vector<double>;
 
 nlohmann::json golden(const char* name) {
-  std::ifstream file(std::string(ZONAL_SOURCE_DIR "/tests/golden/") + name);
+  std::ifstream file((test::source_dir() + "/tests/golden/") + name);
   return nlohmann::json::parse(file);
 }
 

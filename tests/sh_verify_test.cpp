@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "sh/clamped_cosine.h"
 #include "sh/sphere_light.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kGolden = ZONAL_SOURCE_DIR "/tests/golden/";
+const std::string kGolden = test::source_dir() + "/tests/golden/";
 const std::vector<std::string> kKinds = {"sh_basis", "sh_gradient", "zh_sphere", "polygon_sh",
                                          "rotation", "products",    "ggx_zh",    "yuksel"};
 
@@ -176,7 +177,7 @@ TEST(SphericalHarmonicsPage, the_first_program_gives_what_it_says) {
   sh::clamped_cosine_product(5, light, weighted);
   const float irradiance = 2 * std::sqrt(3.14159265f) * weighted[0];
   EXPECT_NEAR(irradiance, 3.14159265f * 0.0625f, 0.005f);
-  const std::string page = contents(ZONAL_SOURCE_DIR "/docs/spherical_harmonics.md");
+  const std::string page = contents(test::source_dir() + "/docs/spherical_harmonics.md");
   for (const char* line :
        {"float light[sh::count(5)], weighted[sh::count(5)];",
         "sh::sphere_light(5, glm::vec3(0), glm::vec3(0, 0, 2), 0.5f, light);",
@@ -185,17 +186,16 @@ TEST(SphericalHarmonicsPage, the_first_program_gives_what_it_says) {
 }
 
 TEST(VerifyDocumentation, prints_the_table_of_tolerances) {
-  const std::string page = contents(ZONAL_SOURCE_DIR "/docs/verify.md");
+  const std::string page = contents(test::source_dir() + "/docs/verify.md");
   EXPECT_NE(page.find(tolerance_table()), std::string::npos)
       << "docs/verify.md differs from zonal verify --tolerances:\n"
       << tolerance_table();
 }
 
-#ifdef ZONAL_PROGRAM
 TEST_F(VerifyFile, exit_codes_are_0_past_1_and_unreadable_2) {
   const auto run = [&](const std::string& files) {
-    const int status =
-        std::system((ZONAL_PROGRAM " verify " + files + " > " + (folder / "out").string() + " 2>&1").c_str());
+    const int status = std::system(
+        (test::program() + " verify " + files + " > " + (folder / "out").string() + " 2>&1").c_str());
     return WEXITSTATUS(status);
   };
   const auto lines = [&] {
@@ -212,7 +212,6 @@ TEST_F(VerifyFile, exit_codes_are_0_past_1_and_unreadable_2) {
   EXPECT_EQ(lines(), 3) << "a bad file does not keep the others from being checked";
   EXPECT_EQ(run(""), 2);
 }
-#endif
 
 }  // namespace
 }  // namespace zonal

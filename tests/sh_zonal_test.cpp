@@ -11,6 +11,7 @@
 #include "sh/light_batch.h"
 #include "sh/simple_lights.h"
 #include "sh/sphere_light.h"
+#include "tests/paths.h"
 
 namespace zonal::sh {
 namespace {
@@ -26,7 +27,7 @@ using dvec3 = Vec3<double>;
 constexpr double kPi = 3.14159265358979323846;
 
 json golden(const std::string& name) {
-  std::ifstream file(std::string(ZONAL_SOURCE_DIR) + "/tests/golden/" + name + ".json");
+  std::ifstream file(test::source_dir() + "/tests/golden/" + name + ".json");
   EXPECT_TRUE(file) << name;
   return json::parse(file);
 }

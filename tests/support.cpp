@@ -1,22 +1,26 @@
 #include "tests/support.h"
+#include "tests/paths.h"
 
 #include <cmath>
 
 namespace zonal::test {
 
 Scene scene_from(const std::string& json) {
-  return parse_scene(json, std::string(ZONAL_SOURCE_DIR) + "/tests/inline.json");
+  return parse_scene(json, test::source_dir() + "/tests/inline.json");
 }
 
 Scene bundled_scene(const std::string& name) {
-  return load_scene(std::string(ZONAL_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".json");
+  return load_scene(test::source_dir() + "/scenes/" + name + "/" + name + ".json");
 }
 
 Image render_with(const Scene& scene, const std::string& name, const RenderSpec& spec) {
-  const auto integrator = find_integrator(name, "test").make(nlohmann::json::parse(spec.settings), "test", nullptr);
+  const auto integrator =
+      find_integrator(name, "test").make(nlohmann::json::parse(spec.settings), "test", nullptr);
   Film film(spec.width, spec.height);
   render(scene, *integrator, film, {.passes = spec.passes},
-         {.seed = spec.seed, .threads = spec.threads, .pixels = spec.jitter ? RenderOptions::Pixels::jitter : RenderOptions::Pixels::automatic});
+         {.seed = spec.seed,
+          .threads = spec.threads,
+          .pixels = spec.jitter ? RenderOptions::Pixels::jitter : RenderOptions::Pixels::automatic});
   return film.radiance();
 }
 
@@ -56,17 +60,22 @@ double beta_fraction(double a, double b, double x) {
 double incomplete_beta(double a, double b, double x) {
   if (x <= 0) return 0;
   if (x >= 1) return 1;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-  return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a : 1 - front * beta_fraction(b, a, 1 - x) / b;
+  const double front =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+  return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a
+                                   : 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
 
-double two_sided_p(double t, double freedom) { return incomplete_beta(freedom / 2, 0.5, freedom / (freedom + t * t)); }
+double two_sided_p(double t, double freedom) {
+  return incomplete_beta(freedom / 2, 0.5, freedom / (freedom + t * t));
+}
 
 }  // namespace
 
 double t_test_p(const Estimate& e, double truth) {
   const double difference = std::abs(e.mean - truth);
-  if (e.standard_error == 0) return difference <= 1e-5 * std::abs(truth) ? 1 : 0;  // no scatter: equal to rounding, or wrong
+  if (e.standard_error == 0)
+    return difference <= 1e-5 * std::abs(truth) ? 1 : 0;  // no scatter: equal to rounding, or wrong
   return two_sided_p(difference / e.standard_error, e.samples - 1);
 }
 

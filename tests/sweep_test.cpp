@@ -21,6 +21,7 @@
 #include "sweep/search.h"
 #include "sweep/statistics.h"
 #include "sweep/sweep_file.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace {
@@ -28,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string kScene = std::string(ZONAL_SOURCE_DIR) + "/scenes/cornell/cornell.json";
+const std::string kScene = test::source_dir() + "/scenes/cornell/cornell.json";
 
 /// A folder that goes away with the test.
 struct Folder {
@@ -74,7 +75,7 @@ std::string complaint(const json& sweep) {
 }
 
 int sweep(const std::string& file, const std::string& out) {
-  const ProcessResult result = run_process({ZONAL_PROGRAM, "sweep", file, "-o", out, "--quiet"}, nullptr);
+  const ProcessResult result = run_process({test::program(), "sweep", file, "-o", out, "--quiet"}, nullptr);
   return result.signal ? -result.signal : result.exit_code;
 }
 
@@ -284,7 +285,7 @@ TEST(Sweep, killed_at_random_moments_it_resumes_to_the_same_table) {
   for (int kill_count = 0; kill_count < 6; ++kill_count) {
     const pid_t child = fork();
     if (child == 0) {
-      execl(ZONAL_PROGRAM, "zonal", "sweep", file.c_str(), "-o", out.c_str(), "--quiet", nullptr);
+      execl(test::program().c_str(), "zonal", "sweep", file.c_str(), "-o", out.c_str(), "--quiet", nullptr);
       _exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 700));
