@@ -12,10 +12,10 @@
 
 #include "core/glsl.h"
 #include "sh/batch.h"
+#include "tests/paths.h"
 
 namespace zonal {
 #include "sh/basis.glsl"
-#include "tests/paths.h"
 
 namespace {
 
@@ -23,7 +23,7 @@ using sh::Vec3;
 using Json = nlohmann::json;
 
 Json golden(const char* name) {
-  std::ifstream in((zonal::test::source_dir() + "/tests/golden/") + name);
+  std::ifstream in((test::source_dir() + "/tests/golden/") + name);
   return Json::parse(in)["cases"];
 }
 
