@@ -28,6 +28,7 @@ using glm::normalize;
 using glm::reflect;
 using std::abs;
 using std::exp;
+using std::log;
 using std::pow;
 using std::sqrt;
 }  // namespace zonal

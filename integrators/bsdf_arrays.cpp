@@ -4,11 +4,16 @@
 #include <array>
 #include <bit>
 
-#include "materials/fresnel.h"
+#include "core/glsl.h"
 #include "materials/measured_brdf.h"
 #include "materials/microfacet.h"
 
+// Loops over the kernel become vectors when every call in them is gone.
+#undef KERNEL
+#define KERNEL [[gnu::always_inline]] inline
+
 namespace zonal {
+#include "materials/brdf.glsl"
 
 namespace {
 
@@ -17,21 +22,6 @@ constexpr int kRow = SpecularAlbedo::Row::kPoints;
 
 enum class Fresnel { schlick, dielectric, conductor };
 
-/// fresnel_conductor with both sides of its choice computed, so that it vectorises.
-[[gnu::always_inline]] inline float conductor(float cosine, float eta, float k) {
-  const float c2 = std::fmax(cosine * cosine, 1e-12f), s2 = 1.0f - c2;
-  const float real = eta * eta - k * k - s2;
-  const float modulus = std::sqrt(real * real + 4.0f * eta * eta * k * k);
-  const float larger = std::sqrt(0.5f * (modulus + std::fabs(real)));
-  const float smaller = eta * k / std::fmax(larger, 1e-12f);
-  const float positive = real >= 0.0f ? 1.0f : 0.0f;
-  const float t = 2.0f * (smaller + positive * (larger - smaller)) * std::sqrt(c2);
-  const float reflect_s = (modulus + c2 - t) / (modulus + c2 + t);
-  const float u = c2 * modulus + s2 * s2;
-  const float reflect_p = reflect_s * (u - t * s2) / (u + t * s2);
-  return 0.5f * (reflect_s + reflect_p);
-}
-
 /// One evaluation of a GGX coat over a diffuse base, without a branch: what `evaluate_both` of
 /// materials/bsdf.cpp does.
 template <Fresnel kFresnel, bool kPdf>
@@ -39,41 +29,28 @@ template <Fresnel kFresnel, bool kPdf>
                                                  float& r, float& g, float& b, float& pdf) {
   const float above = z > kMinCosine ? 1.0f : 0.0f;
   const float cos_in = std::fmax(z, kMinCosine);
-  const float sx = x + e.ox, sy = y + e.oy, sz = cos_in + e.oz;
-  const float inverse = 1.0f / std::sqrt(sx * sx + sy * sy + sz * sz);
-  const float hx = sx * inverse, hy = sy * inverse, hz = sz * inverse;
-  const float cosine = std::fmin(std::fmax(e.ox * hx + e.oy * hy + e.oz * hz, 0.0f), 1.0f);
-
-  // D and the visibility share one division.
-  const float px = hx * e.inverse_x, py = hy * e.inverse_y;
-  const float s = px * px + py * py + hz * hz;
-  const float qx = e.alpha_x * x, qy = e.alpha_y * y;
-  const float stretch_in = std::sqrt(qx * qx + qy * qy + cos_in * cos_in);
-  const float d_numerator = kInvPi * e.inverse_x * e.inverse_y;
-  const float visibility = e.oz * stretch_in + cos_in * e.stretch;
-  const float lobe = e.specular * above * (0.5f * d_numerator / (s * s * visibility));
+  float cosine, density;
+  const float lobe = e.specular * above *
+                     brdf_ggx(vec3(e.ox, e.oy, e.oz), e.stretch, vec3(x, y, cos_in),
+                              vec2(e.alpha_x, e.alpha_y), vec2(e.inverse_x, e.inverse_y), cosine, density);
 
   float fr, fg, fb;
   if constexpr (kFresnel == Fresnel::schlick) {
-    const float m = schlick_weight(cosine);
+    const float m = brdf_schlick_weight(cosine);
     fr = e.f_r + (1.0f - e.f_r) * m, fg = e.f_g + (1.0f - e.f_g) * m, fb = e.f_b + (1.0f - e.f_b) * m;
   } else if constexpr (kFresnel == Fresnel::dielectric) {
-    // fresnel_dielectric of an index >= 1, where g^2 > 0.
-    const float c = cosine, root = std::sqrt(std::fmax(e.f_r * e.f_r - 1.0f + c * c, 1e-12f));
-    const float ratio = (root - c) / (root + c);
-    const float p = (c * (root + c) - 1.0f) / (c * (root - c) + 1.0f);
-    const float f = 0.5f * ratio * ratio * (1.0f + p * p);
+    const float f = brdf_dielectric(cosine, e.f_r);
     fr = e.t_r * f, fg = e.t_g * f, fb = e.t_b * f;
   } else {
-    fr = e.t_r * conductor(cosine, e.f_r, e.k_r);
-    fg = e.t_g * conductor(cosine, e.f_g, e.k_g);
-    fb = e.t_b * conductor(cosine, e.f_b, e.k_b);
+    fr = e.t_r * brdf_conductor(cosine, e.f_r, e.k_r);
+    fg = e.t_g * brdf_conductor(cosine, e.f_g, e.k_g);
+    fb = e.t_b * brdf_conductor(cosine, e.f_b, e.k_b);
   }
   r = fr * lobe, g = fg * lobe, b = fb * lobe;
 
   if constexpr (kFresnel != Fresnel::conductor) {
     // What the coat keeps, from its table over the fourth root of the cosine.
-    const float at = std::sqrt(std::sqrt(std::fmin(cos_in, 1.0f))) * (kRow - 1);
+    const float at = brdf_coat_place(cos_in, float(kRow));
     const int node = static_cast<int>(std::fmin(at, kRow - 2.0f));
     const float* row = rows + static_cast<int>(e.row) * kRow;
     const float low = row[node], kept = low + (at - static_cast<float>(node)) * (row[node + 1] - low);
@@ -81,8 +58,7 @@ template <Fresnel kFresnel, bool kPdf>
     r += e.d_r * base, g += e.d_g * base, b += e.d_b * base;
   }
   if constexpr (kPdf) {
-    const float specular = 0.5f * d_numerator / (s * s * (e.oz + e.stretch));
-    pdf = above * (e.share * specular + e.diffuse_share * cos_in * kInvPi);
+    pdf = above * (e.share * density + e.diffuse_share * cos_in * kInvPi);
   }
 }
 

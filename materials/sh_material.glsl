@@ -1,7 +1,7 @@
 // Reads a .shmat file from an array of 32-bit words, as it lies in a GPU buffer: the shader's side of
 // ShMaterial::look_up. docs/shmat.md has the layout.
 //
-// Who includes this defines SHMAT_WORD(i), the i-th word of the buffer. Files may lie one after the other: `base` is the
+// Needs sh/angle.glsl before it. Who includes this defines SHMAT_WORD(i), the i-th word of the buffer. Files may lie one after the other: `base` is the
 // word where one starts.
 //
 //     ShmatTable table = shmat_open(base);
@@ -45,7 +45,7 @@ KERNEL uint shmat_row(ShmatTable t, uint table, uint azimuth, uint elevation) {
 // w_out: unit, shading frame, z > 0. Elevations are 0, 1, ... 89, 89.5 degrees; beyond, the last row.
 KERNEL ShmatPlace shmat_find(ShmatTable t, uint table, vec3 w_out) {
   float r2 = w_out.x * w_out.x + w_out.y * w_out.y;
-  float angle = atan(sqrt(r2), w_out.z) * 57.2957795f;
+  float angle = upper_angle(sqrt(r2), w_out.z) * 57.2957795f;
   uint low = 90u;
   float s = 0.0f;
   if (angle < 89.5f) {
@@ -56,8 +56,8 @@ KERNEL ShmatPlace shmat_find(ShmatTable t, uint table, vec3 w_out) {
   uint first = 0u;
   float a = 0.0f;
   if (t.azimuths > 1u && r2 > 1e-12f) {
-    float turn = atan(w_out.y, w_out.x) * 0.159154943f;  // 1/2pi
-    turn = (turn < 0.0f ? turn + 1.0f : turn) * float(t.azimuths);
+    float turn = upper_angle(abs(w_out.y), w_out.x) * 0.159154943f;  // 1/2pi
+    turn = (w_out.y < 0.0f ? 1.0f - turn : turn) * float(t.azimuths);
     first = min(uint(turn), t.azimuths - 1u);
     a = turn - float(first);
   }

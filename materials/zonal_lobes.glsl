@@ -1,5 +1,5 @@
 // What a shaded point does with one spherical light when its BRDF is a diffuse part and a zonal lobe (Mézières 2022, Sec.
-// 5.2.7): pure functions for shaders and C++. Needs sh/sphere_light.glsl before it. Nothing branches on data, and loops run
+// 5.2.7): pure functions for shaders and C++. Needs sh/angle.glsl and sh/sphere_light.glsl before it. Nothing branches on data, and loops run
 // over bands alone, so that a loop over lights vectorises.
 //
 //     ZonalCap cap = sphere_cap(d2, r);                            // the light, seen from the point
@@ -58,26 +58,6 @@ KERNEL float zonal_diffuse(float L0, float L1, float L2, float z) {
   float c4 = 0.886226925f;  // sqrt(pi)/2
   float c5 = 0.247708239f;  // 1/16 sqrt(5 pi)
   return c3 * L2 * z * z + 2.0f * c2 * L1 * z + c4 * L0 - c5 * L2;
-}
-
-// (x - atan x)/x^3 as a polynomial in x^2, for x in [0, 1]: Chebyshev interpolation, error 1e-7.
-KERNEL float atan_tail(float x2) {
-  float a = 0.0200267476f - 0.00386673891f * x2;
-  a = -0.0489143215f + a * x2;
-  a = 0.0800968172f + a * x2;
-  a = -0.108657591f + a * x2;
-  a = 0.142570449f + a * x2;
-  a = -0.199986812f + a * x2;
-  return 0.333333231f + a * x2;
-}
-// Angle of the point (x, y), y >= 0, in [0, pi].
-KERNEL float upper_angle(float y, float x) {
-  float low = min(y, abs(x));
-  float high = max(max(y, abs(x)), 1e-30f);
-  float k = low / high;
-  float angle = k - k * k * k * atan_tail(k * k);
-  angle = y > abs(x) ? 1.57079633f - angle : angle;
-  return x < 0.0f ? 3.14159265f - angle : angle;
 }
 
 // Irradiance from a cap of radiance 1, exact: the integral of max(0, cos) over it; `z` is the cosine between its axis and the

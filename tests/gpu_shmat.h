@@ -13,9 +13,9 @@ namespace zonal::gpu {
 inline const uint32_t* words = nullptr;
 using glm::uintBitsToFloat;
 using glm::unpackHalf2x16;
-inline float atan(float y, float x) {
-  return std::atan2(y, x);
-}
 #define SHMAT_WORD(i) words[i]
+// clang-format off
+#include "sh/angle.glsl"
 #include "materials/sh_material.glsl"
+// clang-format on
 }  // namespace zonal::gpu

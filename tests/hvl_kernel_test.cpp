@@ -14,6 +14,7 @@ namespace kernel {
 // clang-format off
 #include "sh/basis.glsl"
 #include "sh/sphere_light.glsl"
+#include "sh/angle.glsl"
 #include "materials/zonal_lobes.glsl"
 #include "integrators/hvl/hvl.glsl"
 // clang-format on

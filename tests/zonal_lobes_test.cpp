@@ -22,6 +22,7 @@ namespace {
 namespace shader {
 #include "sh/sphere_light.glsl"
 //
+#include "sh/angle.glsl"
 #include "materials/zonal_lobes.glsl"
 }  // namespace shader
 

@@ -1,6 +1,6 @@
 // Harmonic virtual lights (Mézières 2022, Sec. 5.2): what one light sends to one shaded point, for shaders and C++. Equations
-// are numbered in README.md. Needs sh/basis.glsl, sh/sphere_light.glsl and materials/zonal_lobes.glsl before it; up to 10
-// bands of spherical harmonics. The CPU gathers by hvl_lanes.h, which is tested against this text.
+// are numbered in README.md. Needs sh/basis.glsl, sh/angle.glsl, sh/sphere_light.glsl and materials/zonal_lobes.glsl before
+// it; up to 10 bands of spherical harmonics. The CPU gathers by hvl_lanes.h, which is tested against this text.
 //
 //     vec3 L = hvl_radiance(power, hvl_emission(3, f, scale, w_light), facing, radius);
 //     ZonalCap cap = sphere_cap(d2, radius);
