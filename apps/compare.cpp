@@ -9,15 +9,16 @@
 #include "apps/commands.h"
 #include "core/error.h"
 #include "core/error_map.h"
+#include "core/flip_hdr.h"
 #include "core/metrics.h"
 
 namespace zonal {
 namespace {
 
 struct Options {
-  std::string image, reference, error_map;
+  std::string image, reference, error_map, flip_map;
   double exposure = 0;  ///< 0: from the metadata
-  bool json = false;
+  bool json = false, flip_hdr = false;
 };
 
 const Image* layer(const ImageFile& file, const std::string& name) {
@@ -59,7 +60,7 @@ nlohmann::ordered_json to_json(const DisplayMetrics& m) {
           {"mae", number(m.mae)},
           {"psnr", number(m.psnr)},
           {"ssim", number(m.ssim)},
-          {"flip", nullptr}};
+          {"flip", number(m.flip)}};
 }
 
 /// What only a reference of two halves can tell.
@@ -88,7 +89,8 @@ void print_table(const nlohmann::ordered_json& result) {
 }
 
 int compare_command(const Options& options) {
-  if (!options.error_map.empty()) check_writable(options.error_map);
+  for (const std::string& file : {options.error_map, options.flip_map})
+    if (!file.empty()) check_writable(file);
   const ImageFile image = read_image(options.image), reference = read_image(options.reference);
   const Image &x = image.layers.at(""), &r = reference.layers.at("");
   const float exposure = exposure_of(options, image, reference);
@@ -103,6 +105,7 @@ int compare_command(const Options& options) {
     metrics =
         linear_metrics(x, r, layer(reference, "A"), layer(reference, "B"), layer(reference, "variance"));
     result["linear"] = to_json(*metrics);
+    if (options.flip_hdr) result["linear"]["flip_hdr"] = number(mean_of_map(FlipHdr(r).map(x)));
   }
   result["display"] = to_json(display_metrics(shown_x, shown_r));
   if (metrics && metrics->mse_unbiased) result["reference"] = reference_json(*metrics);
@@ -112,15 +115,18 @@ int compare_command(const Options& options) {
     print_table(result);
   }
 
-  if (!options.error_map.empty()) {
-    ImageFile map = error_map(linear ? relative_error(x, r) : relative_error(shown_x, shown_r));
+  const auto draw = [&](const std::string& file, const char* what, const Image& error) {
+    ImageFile map = error_map(error);
     map.metadata["image"] = options.image, map.metadata["reference"] = options.reference;
-    write_image(options.error_map, map, 1);
-    if (!options.json) {
-      fmt::print("{}: relative error from {} (dark) to {} (bright)\n", options.error_map,
-                 map.metadata["error_map_low"], map.metadata["error_map_high"]);
-    }
-  }
+    write_image(file, map, 1);
+    if (!options.json)
+      fmt::print("{}: {} from {} (dark) to {} (bright)\n", file, what, map.metadata["error_map_low"],
+                 map.metadata["error_map_high"]);
+  };
+  if (!options.error_map.empty())
+    draw(options.error_map, "relative error",
+         linear ? relative_error(x, r) : relative_error(shown_x, shown_r));
+  if (!options.flip_map.empty()) draw(options.flip_map, "FLIP", flip_map(shown_x, shown_r));
   return kDone;
 }
 
@@ -136,6 +142,9 @@ void add_compare(CLI::App& app, int* exit_code) {
                    "factor before the display transform; default: the metadata's")
       ->check(CLI::Range(1e-30, 1e30));
   command->add_option("--error-map", options->error_map, "PNG of the relative error of each pixel");
+  command->add_option("--flip-map", options->flip_map, "PNG of what FLIP says of each pixel");
+  command->add_flag("--flip-hdr", options->flip_hdr,
+                    "HDR-FLIP too: FLIP's worst over exposures, as many times as slow");
   command->add_flag("--json", options->json, "print JSON");
   command->callback([=] { *exit_code = compare_command(*options); });
 }

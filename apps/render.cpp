@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "core/backend.h"
 #include "core/error.h"
 #include "core/image.h"
 #include "core/machine.h"
@@ -57,15 +58,17 @@ nlohmann::json counters_json(const RenderReport& report) {
 /// How to have the same picture again, bit for bit, without a clock.
 std::string repeat_line(const Options& options, const RenderReport& report) {
   std::string line = fmt::format("--passes {}", report.passes);
-  if (report.passes == 1) line += " --pixels jitter";
+  if (options.pixels != RenderOptions::Pixels::automatic)
+    line += fmt::format(" --pixels {}", pixels_name(options.pixels));
+  else if (report.passes == 1 && options.seconds > 0)
+    line += " --pixels jitter";
   const auto lights = report.pass.numbers.find("pass_lights");
   if (lights != report.pass.numbers.end()) line += fmt::format(" --set pass_lights={:.0f}", lights->second);
   return line + fmt::format(" --seed {}", options.seed);
 }
 
 int render_command(const Options& options) {
-  if (options.backend != "cpu")
-    throw SceneError(fmt::format("--backend: found \"{}\", expected \"cpu\" (this build has no GPU backend)", options.backend));
+  check_backend(options.backend, "--backend");
   if (options.passes > 0 && options.seconds > 0) throw SceneError("--passes and --time: expected only one of them");
   LoadOptions load{.frame = options.frame, .materials = material_replacements(options.materials)};
   if (!options.size.empty()) parse_size(options.size, &load.width, &load.height);

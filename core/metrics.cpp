@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/flip.h"
 
 namespace zonal {
 namespace {
@@ -221,6 +222,7 @@ DisplayMetrics display_metrics(const Image& image, const Image& reference) {
   metrics.psnr = -20 * std::log10(metrics.rmse);  // infinity when nothing differs
   const bool large_enough = image.width >= kSsimWindow && image.height >= kSsimWindow;
   metrics.ssim = large_enough ? ssim(image, reference) : kNaN;
+  metrics.flip = mean_of_map(flip_map(image, reference));
   return metrics;
 }
 
@@ -233,13 +235,15 @@ const std::vector<MetricInfo>& metric_infos() {
       {"smape", "linear", "in [0, 2]", "", "mean of 2|x-r| / (|x|+|r|)"},
       {"bias", "linear", "", "W m^-2 sr^-1", "mean of x-r"},
       {"fireflies", "linear", "in [0, 1]", "", "share of pixels far above all the reference shows nearby"},
+      {"flip_hdr", "linear", "in [0, 1]", "",
+       "HDR-FLIP (Andersson et al. 2021): FLIP's worst over exposures"},
       {"nan", "linear", ">= 0", "pixels", "pixels that are not finite; left out of everything else"},
       {"rmse", "display", "in [0, 1]", "", "root of the mean squared error of sRGB-encoded values"},
       {"mae", "display", "in [0, 1]", "", "mean absolute error of sRGB-encoded values"},
       {"psnr", "display", "", "dB", "-20 log10 of the display rmse; \"inf\" when nothing differs"},
       {"ssim", "display", "in [-1, 1]", "",
        "structural similarity (Wang et al. 2004) of luminance, 11x11 Gaussian"},
-      {"flip", "display", "in [0, 1]", "", "not there yet: null"},
+      {"flip", "display", "in [0, 1]", "", "FLIP (Andersson et al. 2020) seen from 67 pixels a degree"},
   };
   return infos;
 }

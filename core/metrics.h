@@ -40,6 +40,7 @@ struct LinearMetrics {
 struct DisplayMetrics {
   double rmse = 0, mae = 0, psnr = std::numeric_limits<double>::infinity();
   double ssim = 1;  ///< NaN for pictures below 11x11
+  double flip = 0;  ///< see core/flip.h; what a viewer sees when flipping between the two
 };
 
 /// The halves and the variance of the mean belong to a cached reference and may be absent.

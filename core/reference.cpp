@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
 
 #include "core/error.h"
 #include "core/hash.h"
@@ -22,11 +24,11 @@ std::string content_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Adds every file that a string of the scene file names: meshes, textures, skies. Textures that a mesh file
+/// Lists every file that a string of the scene file names: meshes, textures, skies. Textures that a mesh file
 /// names in turn are not looked for.
-void add_named_files(const nlohmann::json& value, const fs::path& folder, Hash* hash) {
+void list_named_files(const nlohmann::json& value, const fs::path& folder, std::vector<fs::path>* files) {
   if (value.is_structured()) {
-    for (const auto& element : value) add_named_files(element, folder, hash);
+    for (const auto& element : value) list_named_files(element, folder, files);
   } else if (value.is_string()) {
     constexpr const char* kVariable = "${ZONAL_DATA}";
     std::string name = value.get<std::string>();
@@ -34,8 +36,43 @@ void add_named_files(const nlohmann::json& value, const fs::path& folder, Hash* 
     if (name.rfind(kVariable, 0) == 0 && data) name.replace(0, std::string(kVariable).size(), data);
     std::error_code error;
     const fs::path file = folder / name;
-    if (!name.empty() && fs::is_regular_file(file, error)) hash->add(content_of(file));
+    if (!name.empty() && fs::is_regular_file(file, error)) files->push_back(file);
   }
+}
+
+/// Size and time of files: other ones, other content.
+std::string stamp_of(const std::vector<fs::path>& files) {
+  std::string stamp;
+  std::error_code error;
+  for (const fs::path& file : files)
+    stamp += fmt::format("{} {} ", fs::file_size(file, error),
+                         fs::last_write_time(file, error).time_since_epoch().count());
+  return stamp;
+}
+
+/// Hash of the scene file's content and that of the files it names. A sweep asks again and again: what has
+/// not changed is not read twice.
+Hash scene_hash(const std::string& scene_file) {
+  struct Known {
+    std::vector<fs::path> files;
+    std::string stamp;
+    Hash hash;
+  };
+  static std::mutex mutex;
+  static std::map<std::string, Known> all;
+  const std::lock_guard lock(mutex);
+  const auto found = all.find(scene_file);
+  if (found != all.end() && stamp_of(found->second.files) == found->second.stamp) return found->second.hash;
+  Known known{.files = {scene_file}, .stamp = {}, .hash = {}};
+  // Stamps before contents: what changes meanwhile is read again the next time.
+  known.stamp = stamp_of(known.files);
+  const std::string text = content_of(scene_file);
+  const nlohmann::json scene = nlohmann::json::parse(text, nullptr, false);
+  if (!scene.is_discarded()) list_named_files(scene, fs::path(scene_file).parent_path(), &known.files);
+  known.stamp += stamp_of({known.files.begin() + 1, known.files.end()});
+  known.hash.add(text);
+  for (size_t i = 1; i < known.files.size(); ++i) known.hash.add(content_of(known.files[i]));
+  return (all[scene_file] = known).hash;
 }
 
 /// One half of the work, told as a part of the whole.
@@ -73,11 +110,7 @@ uint64_t half_seed(uint64_t seed, int half) {
 }
 
 std::string reference_key(const ReferenceRequest& request) {
-  Hash hash;
-  const std::string text = content_of(request.scene_file);
-  hash.add(text);
-  const nlohmann::json scene = nlohmann::json::parse(text, nullptr, false);
-  if (!scene.is_discarded()) add_named_files(scene, fs::path(request.scene_file).parent_path(), &hash);
+  Hash hash = scene_hash(request.scene_file);
   hash.add(request.integrator);
   hash.add(request.settings.dump());
   hash.add(fmt::format("passes {} seconds {} size {}x{} frame {} seed {}", request.passes, request.seconds,
@@ -160,7 +193,10 @@ bool reference_is_current(const std::string& exr, const ReferenceRequest& reques
   try {  // a damaged picture is made again, not complained about
     const ImageFile image = read_image(exr);
     const auto found = image.metadata.find("key");
-    return found != image.metadata.end() && found->second == key && image.layers.count("A") &&
+    const Image& mean = image.layers.at("");
+    const bool right_size =
+        request.width == 0 || (mean.width == request.width && mean.height == request.height);
+    return found != image.metadata.end() && found->second == key && right_size && image.layers.count("A") &&
            image.layers.count("B");
   } catch (const SceneError&) {
     return false;

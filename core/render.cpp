@@ -96,6 +96,17 @@ class Pinning {
 
 }  // namespace
 
+const char* pixels_name(RenderOptions::Pixels pixels) {
+  switch (pixels) {
+    case RenderOptions::Pixels::center:
+      return "center";
+    case RenderOptions::Pixels::jitter:
+      return "jitter";
+    default:
+      return "automatic";
+  }
+}
+
 void trace_tile(const Scene& scene, const Camera& camera, ivec2 corner, uint64_t seed, int pass, bool jitter,
                 Tile* tile, Sampler* samplers) {
   tile->count = 0;

@@ -27,6 +27,9 @@ struct RenderOptions {
   bool pin = false;  ///< each thread stays on one core: steadier times
 };
 
+/// "automatic", "center", "jitter": as options and records call it.
+const char* pixels_name(RenderOptions::Pixels pixels);
+
 struct RenderReport {
   int passes = 0;
   bool interrupted = false;  ///< `stop` was set; the film holds what was finished

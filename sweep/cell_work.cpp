@@ -30,7 +30,7 @@ std::string search_key(const SweepPlan& plan, const Cell& cell) {
 
 std::optional<CellWork> cell_work(const SweepPlan& plan, const CellStore& store, const Cell& cell) {
   const CellBudget& budget = plan.budgets[cell.budget];
-  CellWork work{.settings = plan.methods[cell.method].set};
+  CellWork work{.settings = method_settings(plan.scenes[cell.scene], plan.methods[cell.method])};
   if (budget.kind == CellBudget::passes) work.passes = static_cast<int>(budget.value);
   if (budget.kind == CellBudget::seconds) work.seconds = budget.value;
   if (budget.kind >= CellBudget::equal_time) {

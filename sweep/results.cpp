@@ -2,18 +2,17 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 #include <ctime>
 #include <map>
 
-#include "core/image.h"
 #include "core/machine.h"
 #include "core/metrics.h"
-#include "sweep/runner.h"
-#include "sweep/score.h"
+#include "sweep/cell_process.h"
+#include "sweep/cell_work.h"
+#include "sweep/digest.h"
 #include "sweep/statistics.h"
 
 namespace zonal {
@@ -63,6 +62,11 @@ json cell_json(const SweepPlan& plan, const CellStore& store, const Cell& cell) 
   if (!record) return out;
   out["status"] = (*record)["status"], out["reason"] = (*record)["reason"];
   if (out["status"] != "done") return out;
+  const json scores = cell_scores(store, work->key);
+  if (scores.contains("reason")) {
+    out["status"] = "failed", out["reason"] = scores["reason"];
+    return out;
+  }
   const json& stats = (*record)["stats"];
   out["parameters"] = stats["parameters"], out["passes"] = stats["passes"], out["seconds"] = stats["seconds"];
   out["counters"] = stats["counters"], out["repeat"] = stats["repeat"],
@@ -74,7 +78,6 @@ json cell_json(const SweepPlan& plan, const CellStore& store, const Cell& cell) 
     out["reason"] = fmt::format("nearest: {} {}", work->search["count"].get<int>(),
                                 work->search["parameter"].get<std::string>());
   }
-  const json scores = cell_scores(store, work->key);
   if (scores.contains("matching")) out["scores"] = scores["matching"];
   if (scores.contains("full")) out["scores_full"] = scores["full"];
   if (scores.contains("curve") && !scores["curve"].empty()) out["curve"] = scores["curve"];
@@ -82,32 +85,34 @@ json cell_json(const SweepPlan& plan, const CellStore& store, const Cell& cell) 
   return out;
 }
 
-/// How the error splits over seeds: noise is what the seeds differ by, bias what their mean is off by.
-void split_error(const CellStore& store, const std::vector<const json*>& cells, json* group) {
-  if (cells.size() < 2) return;
-  std::vector<Image> images;
-  for (const json* cell : cells)
-    images.push_back(read_image(store.cell_folder((*cell)["id"]) + "/image.exr").layers.at(""));
-  const ImageFile reference = read_image(store.reference_file((*cells[0])["reference"]));
-  const Image& r = reference.layers.at("");
-  const double n = static_cast<double>(images.size());
-  double scatter = 0, error = 0;
-  size_t counted = 0;
-  for (size_t i = 0; i < r.pixels.size(); ++i) {
-    double mean = 0, squares = 0;
-    for (const Image& image : images) mean += image.pixels[i] / n;
-    for (const Image& image : images) squares += (image.pixels[i] - mean) * (image.pixels[i] - mean);
-    if (!std::isfinite(mean + r.pixels[i])) continue;
-    scatter += squares / (n - 1);
-    error += (mean - r.pixels[i]) * (mean - r.pixels[i]);
-    ++counted;
+/// The seeds' times, which stand apart in the shuffled order and so hold the machine's drift; of a single
+/// seed, those of its runs.
+std::vector<double> times_of(const std::vector<const json*>& cells) {
+  std::vector<double> times;
+  for (const json* cell : cells) times.push_back((*cell)["time"]);
+  if (cells.size() == 1) times = (*cells[0])["runs"].get<std::vector<double>>();
+  return times;
+}
+
+/// Each group's time over that of the first method on the same scene, budget and backend.
+void add_time_ratios(const std::vector<json>& cells, std::vector<json>* groups) {
+  std::vector<std::vector<const json*>> timed(groups->size());
+  for (const json& cell : cells)
+    if (!cell["time"].is_null()) timed[cell["group"].get<size_t>()].push_back(&cell);
+  for (size_t g = 0; g < groups->size(); ++g) {
+    json& group = (*groups)[g];
+    group["time_ratio"] = nullptr;
+    for (size_t first = 0; first < g && !timed[g].empty(); ++first) {
+      const json& other = (*groups)[first];
+      if (timed[first].empty() || other["scene"] != group["scene"] || other["budget"] != group["budget"] ||
+          other["backend"] != group["backend"])
+        continue;
+      const Interval ratio = ratio_interval(times_of(timed[g]), times_of(timed[first]));
+      group["time_ratio"] = {
+          {"mean", ratio.mean}, {"low", ratio.low}, {"high", ratio.high}, {"to", other["method"]}};
+      break;
+    }
   }
-  if (counted == 0) return;
-  const double variance = scatter / counted;
-  const double floor = (*cells[0])["scores"].value("reference_floor", 0.0);
-  (*group)["noise"] = std::sqrt(variance);
-  // The mean of n seeds still holds a share of the noise, and the reference some of its own.
-  (*group)["bias"] = std::sqrt(std::max(0.0, error / counted - variance / n - floor * floor));
 }
 
 json group_json(const SweepPlan& plan, const CellStore& store, const std::vector<const json*>& cells) {
@@ -120,21 +125,22 @@ json group_json(const SweepPlan& plan, const CellStore& store, const std::vector
                 {"noise", nullptr},          {"bias", nullptr},
                 {"reference_limited", false}};
   std::vector<const json*> done;
-  std::vector<double> times;
   for (const json* cell : cells) {
     group["cells"].push_back((*cell)["id"]);
     if ((*cell)["status"] == "failed") group["failed"] = group["failed"].get<int>() + 1;
     if ((*cell)["time"].is_null()) continue;
     done.push_back(cell);
-    for (const json& run : (*cell)["runs"]) times.push_back(run);
   }
   if (done.empty()) return group;
+  const std::vector<double> times = times_of(done);
   const Interval time = student_interval(times);
   group["time"] = {{"mean", time.mean},
                    {"median", median(times)},
                    {"low", time.low},
                    {"high", time.high},
-                   {"runs", times.size()}};
+                   {"samples", times.size()}};
+  for (const json* cell : done)
+    group["time"]["runs"] = group["time"].value("runs", 0) + (*cell)["runs"].size();
   for (const json& metric : result_metrics(plan)) {
     const std::string name = metric["name"];
     std::vector<double> values;
@@ -153,7 +159,8 @@ json group_json(const SweepPlan& plan, const CellStore& store, const std::vector
   }
   group["reference_limited"] = std::all_of(
       done.begin(), done.end(), [](const json* cell) { return cell->value("reference_limited", false); });
-  split_error(store, done, &group);
+  const json split = group_split(store, (*done[0])["id"]);
+  if (split.contains("noise")) group["noise"] = split["noise"], group["bias"] = split["bias"];
   return group;
 }
 
@@ -188,8 +195,9 @@ json references_json(const SweepPlan& plan, const CellStore& store, const json& 
                     {"integrator", requests[k].integrator},
                     {"transport", transport_text(requests[k].settings)},
                     {"parameters", requests[k].settings},
-                    {"passes", record->value("passes", json())},
-                    {"seconds", record->value("seconds", json())},
+                    {"passes", (*record)["passes"][0].get<int>() + (*record)["passes"][1].get<int>()},
+                    {"seeds", (*record)["seeds"]},
+                    {"seconds", clocked(*record)},
                     {"record", *record},
                     {"floor", floor},
                     {"image", "images/" + key + ".js"}};
@@ -198,6 +206,15 @@ json references_json(const SweepPlan& plan, const CellStore& store, const json& 
   json list = json::array();
   for (auto& [key, value] : found) list.push_back(std::move(value));
   return list;
+}
+
+/// A scene's name as one of a file: without what a path or an address might read otherwise.
+std::string file_name(std::string id, size_t index) {
+  bool changed = false;
+  for (char& c : id)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_' && c != '.')
+      c = '-', changed = true;
+  return changed ? fmt::format("{}-{}", index, id) : id;
 }
 
 json scenes_json(const SweepPlan& plan, const CellStore& store) {
@@ -209,15 +226,15 @@ json scenes_json(const SweepPlan& plan, const CellStore& store) {
                   {"frame", plan.scenes[s].frame},
                   {"width", plan.scenes[s].width},
                   {"height", plan.scenes[s].height},
-                  {"exposure", 1.0}};
+                  {"exposure", 1.0},
+                  {"chart", fmt::format("charts/{}.svg", file_name(plan.scenes[s].id, s))}};
     for (const Cell& cell : plan.cells) {
       if (cell.scene != static_cast<int>(s)) continue;
-      const std::string file = store.reference_file(reference_key(cell_references(plan, cell)[0]));
-      if (!read_record(record_file(file))) continue;
-      const ImageFile reference = read_image(file);
-      scene["width"] = reference.layers.at("").width, scene["height"] = reference.layers.at("").height;
-      const auto exposure = reference.metadata.find("exposure");
-      if (exposure != reference.metadata.end()) scene["exposure"] = std::stod(exposure->second);
+      const auto record =
+          read_record(record_file(store.reference_file(reference_key(cell_references(plan, cell)[0]))));
+      if (!record) continue;
+      scene["width"] = (*record)["resolution"][0], scene["height"] = (*record)["resolution"][1];
+      scene["exposure"] = (*record)["exposure"];
       break;
     }
     list.push_back(scene);
@@ -237,6 +254,9 @@ json result_metrics(const SweepPlan& plan) {
                                  : info.name;
     if (std::find(seen.begin(), seen.end(), name) != seen.end()) return;
     seen.push_back(name);
+    // Too costly to be made unasked.
+    if (name == "flip_hdr" && std::find(plan.metrics.begin(), plan.metrics.end(), name) == plan.metrics.end())
+      return;
     const bool higher = info.name == "psnr" || info.name == "ssim";
     list.push_back({{"name", name},
                     {"values", info.values},
@@ -260,7 +280,8 @@ json sweep_results(const SweepPlan& plan, const CellStore& store) {
   std::vector<std::vector<const json*>> members(plan.groups);
   for (const json& cell : cells) members[cell["group"].get<int>()].push_back(&cell);
   std::vector<json> groups(plan.groups);
-  oneapi::tbb::parallel_for(0, plan.groups, [&](int g) { groups[g] = group_json(plan, store, members[g]); });
+  for (int g = 0; g < plan.groups; ++g) groups[g] = group_json(plan, store, members[g]);
+  add_time_ratios(cells, &groups);
   json methods = json::array();
   for (const SweepMethod& method : plan.methods)
     methods.push_back({{"id", method.id},

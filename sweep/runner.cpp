@@ -13,8 +13,10 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/image.h"
 #include "core/progress.h"
 #include "core/stop.h"
+#include "sweep/cell_process.h"
 #include "sweep/process.h"
 #include "sweep/score.h"
 #include "sweep/search.h"
@@ -25,29 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::string value_text(const json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-const char* pixels_name(RenderOptions::Pixels pixels) {
-  switch (pixels) {
-    case RenderOptions::Pixels::center:
-      return "center";
-    case RenderOptions::Pixels::jitter:
-      return "jitter";
-    default:
-      return "automatic";
-  }
-}
-
-/// One process's worth of rendering.
-struct Render {
-  json settings;
-  int passes = 0;
-  double seconds = 0;
-  std::string image, snapshots;  ///< empty: none wanted
-};
 
 class Runner {
  public:
@@ -67,7 +46,7 @@ class Runner {
     cells_start_ = Clock::now();
     for (size_t i = 0; i < cells_.size() && !stopped(); ++i) {
       run_cell(*cells_[i]);
-      if (i % 10 == 9) baseline();
+      baseline();
     }
     summary_.left = static_cast<int>(cells_.size()) - summary_.done - summary_.kept - summary_.failed;
     summary_.seconds = seconds_since(start);
@@ -88,21 +67,13 @@ class Runner {
           fmt::format("--only: no cell's name contains \"{}\"; --dry-run prints the names", options_.only));
   }
 
-  ProcessResult run(const std::vector<std::string>& command) {
-    const ProcessResult result = run_process(command, options_.stop);
-    summary_.child_seconds += result.seconds;
-    return result;
-  }
-
-  std::vector<std::string> scene_arguments(const SweepScene& scene) const {
-    std::vector<std::string> arguments;
-    if (scene.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(scene.frame)});
-    if (scene.width)
-      arguments.insert(arguments.end(), {"--size", fmt::format("{}x{}", scene.width, scene.height)});
-    if (plan_.threads) arguments.insert(arguments.end(), {"--threads", std::to_string(plan_.threads)});
-    for (const auto& [name, value] : scene.materials.items())
-      arguments.insert(arguments.end(), {"--material", name + "=" + value_text(value)});
-    return arguments;
+  void make_folder(const std::string& folder) const {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+      refuse_full_disk(error.message());
+      throw SceneError(fmt::format("{}: could not be made: {}", folder, error.message()));
+    }
   }
 
   // ---- references ------------------------------------------------------------------------------------
@@ -117,69 +88,34 @@ class Runner {
       const auto& [request, scene] = entry;
       const std::string file = store_.reference_file(key);
       ++i;
-      if (stopped() || reference_is_current(file, request)) continue;
-      say(fmt::format("reference {} of {}", i, wanted.size()));
-      std::vector<std::string> command{options_.program,
-                                       "reference",
-                                       request.scene_file,
-                                       "--integrator",
-                                       request.integrator,
-                                       "--pixels",
-                                       pixels_name(request.pixels),
-                                       "-o",
-                                       file,
-                                       "--quiet"};
-      if (request.passes)
-        command.insert(command.end(), {"--passes", std::to_string(request.passes)});
-      else
-        command.insert(command.end(), {"--time", fmt::format("{:g}", request.seconds)});
-      for (const auto& [name, value] : request.settings.items())
-        command.insert(command.end(), {"--set", name + "=" + value_text(value)});
-      const auto more = scene_arguments(plan_.scenes[scene]);
-      command.insert(command.end(), more.begin(), more.end());
-      const ProcessResult result = run(command);
+      if (stopped()) return;
       std::error_code error;
       fs::remove(failure_file(store_, key), error);
+      if (reference_is_current(file, request)) continue;
+      say(fmt::format("reference {} of {}", i, wanted.size()));
+      const ProcessResult result =
+          run_process(reference_command(options_.program, plan_, scene, request, file), options_.stop);
+      summary_.child_seconds += result.seconds;
+      if (result.ok() || result.interrupted) continue;
+      refuse_full_disk(result.reason());
       // Its cells become rows that say so; the next call tries again.
-      if (!result.ok() && !result.interrupted)
-        write_record(failure_file(store_, key), {{"reason", "the reference failed: " + result.reason()}});
+      write_record(failure_file(store_, key), {{"reason", "the reference failed: " + result.reason()}});
     }
   }
 
   // ---- one rendering process ---------------------------------------------------------------------------
 
   /// The process's --stats, or the reason there are none.
-  std::optional<json> render(const Cell& cell, const Render& what, const std::string& stats,
-                             std::string* reason) {
-    const SweepScene& scene = plan_.scenes[cell.scene];
-    std::vector<std::string> command{options_.program,
-                                     "render",
-                                     scene.file,
-                                     "--integrator",
-                                     plan_.methods[cell.method].integrator,
-                                     "--seed",
-                                     std::to_string(cell.seed),
-                                     "--pixels",
-                                     pixels_name(plan_.pixels),
-                                     "--stats",
-                                     stats,
-                                     "--pin",
-                                     "--quiet"};
-    if (what.seconds > 0)
-      command.insert(command.end(), {"--time", fmt::format("{:g}", what.seconds)});
-    else
-      command.insert(command.end(), {"--passes", std::to_string(what.passes)});
-    for (const auto& [name, value] : what.settings.items())
-      command.insert(command.end(), {"--set", name + "=" + value_text(value)});
-    command.insert(command.end(), {"-o", what.image.empty() ? "none" : what.image});
-    if (!what.snapshots.empty()) command.insert(command.end(), {"--snapshots", what.snapshots});
-    if (cell.backend != "cpu") command.insert(command.end(), {"--backend", cell.backend});
-    const auto more = scene_arguments(scene);
-    command.insert(command.end(), more.begin(), more.end());
-    const ProcessResult result = run(command);
+  std::optional<json> render(const Cell& cell, CellRender what, const std::string& stats, std::string* reason,
+                             bool of_a_cell = true) {
+    what.stats = stats;
+    const ProcessResult result =
+        run_process(render_command(options_.program, plan_, cell, what), options_.stop);
+    if (of_a_cell) summary_.child_seconds += result.seconds;
     if (result.interrupted) return {};
     if (!result.ok()) {
       *reason = result.reason();
+      refuse_full_disk(*reason);
       return {};
     }
     auto record = read_record(stats);
@@ -187,16 +123,21 @@ class Runner {
     return record;
   }
 
-  static double clocked(const json& stats) {
-    return stats["seconds"]["begin_pass"].get<double>() + stats["seconds"]["radiance"].get<double>();
+  /// A cell is not to blame for it: nothing is recorded, and the sweep ends.
+  void refuse_full_disk(const std::string& reason) const {
+    if (tells_of_full_disk(reason))
+      throw SceneError(
+          fmt::format("{}: no room is left ({}); what is finished is kept, and the same command goes on",
+                      store_.folder(), reason));
   }
 
-  /// The first process of a method pays for cold caches and for materials projected once: its time is thrown
-  /// away.
-  void warm_up(const Cell& cell, const CellWork& work, const std::string& folder) {
+  /// The first process of a method pays for cold caches and for materials projected once: its time, that of a
+  /// small picture, is thrown away.
+  void warm_up(const Cell& cell, const json& settings, const std::string& folder) {
     if (!warm_.insert({cell.scene, cell.method}).second) return;
     std::string unused;
-    render(cell, {.settings = work.settings, .passes = 1}, folder + "/warm-up.json", &unused);
+    render(cell, {.settings = settings, .passes = 1, .width = 32, .height = 18}, folder + "/warm-up.json",
+           &unused, false);
     std::error_code error;
     fs::remove(folder + "/warm-up.json", error);
   }
@@ -207,18 +148,20 @@ class Runner {
     const CellBudget& budget = plan_.budgets[cell.budget];
     if (budget.kind < CellBudget::equal_time) return;
     const std::string key = search_key(plan_, cell);
-    if (store_.search(key)) return;
+    if (const auto found = store_.search(key))
+      if (!options_.retry || (*found)["count"].get<int>() > 0) return;
     say("searching: " + cell_name(plan_, cell));
     const SweepMethod& method = plan_.methods[cell.method];
     const std::string parameter = search_parameter(method, budget);
     const std::string folder = store_.cell_folder(key);
-    fs::create_directories(folder);
+    make_folder(folder);
     std::string reason;
     const bool by_time = budget.kind == CellBudget::equal_time;
-    CellWork first{.settings = method.set};
-    warm_up(cell, first, folder);
+    const json settings = method_settings(plan_.scenes[cell.scene], method);
+    warm_up(cell, settings, folder);
+    std::optional<Scorer> scorer;
     const auto measure = [&](int count) {
-      Render what{.settings = method.set, .passes = 1};
+      CellRender what{.settings = settings, .passes = 1};
       if (parameter == "passes")
         what.passes = count;
       else
@@ -227,9 +170,11 @@ class Runner {
       const auto stats = render(cell, what, folder + "/search.json", &reason);
       if (!stats) return std::nan("");
       if (by_time) return clocked(*stats);
-      return score_image(what.image,
-                         store_.reference_file(reference_key(cell_references(plan_, cell)[0])))[budget.metric]
-          .get<double>();
+      if (!scorer)
+        scorer.emplace(store_.reference_file(reference_key(cell_references(plan_, cell)[0])),
+                       budget.metric == "flip_hdr");
+      const json score = scorer->score(read_image(what.image).layers.at(""))[budget.metric];
+      return score.is_number() ? score.get<double>() : std::nan("");
     };
     SearchOptions how{.most_runs = budget.most_runs};
     how.first = parameter == "passes" ? 4 : std::max(1, method.parameters[parameter].get<int>());
@@ -277,10 +222,10 @@ class Runner {
     }
     say(cell_name(plan_, cell));
     const std::string folder = store_.cell_folder(work->key);
-    fs::create_directories(folder);
-    warm_up(cell, *work, folder);
+    make_folder(folder);
+    warm_up(cell, work->settings, folder);
     json record{{"key", work->key}, {"status", "done"}, {"reason", ""}, {"search", work->search}};
-    Render what{.settings = work->settings, .passes = work->passes, .seconds = work->seconds};
+    CellRender what{.settings = work->settings, .passes = work->passes, .seconds = work->seconds};
     std::vector<double> runs;
     // A budget in seconds is its own time; fixed work is timed several times.
     const int wanted = work->seconds > 0 ? 1 : plan_.runs;
@@ -304,20 +249,35 @@ class Runner {
     ++(record["status"] == "done" ? summary_.done : summary_.failed);
   }
 
-  /// The first cell again: what the machine's speed has become of.
+  /// The cheapest of the first ten cells again, for at most a hundredth of the time: what has become of the
+  /// machine's speed.
   void baseline() {
-    const auto work = cell_work(plan_, store_, *cells_[0]);
-    if (!work || stopped()) return;
+    if (summary_.done + summary_.kept < 10 || stopped()) return;
+    if (!baseline_) choose_baseline();
+    if (!baseline_ || seconds_since(last_baseline_) < 100 * baseline_seconds_) return;
+    last_baseline_ = Clock::now();
+    const auto work = cell_work(plan_, store_, *baseline_);
     std::string reason;
-    const auto stats =
-        render(*cells_[0], {.settings = work->settings, .passes = work->passes, .seconds = work->seconds},
-               store_.folder() + "/baseline-stats.json", &reason);
-    const auto first = store_.cell(work->key);
-    if (!stats || !first || !first->contains("time") || work->seconds > 0) return;
+    const auto stats = render(*baseline_, {.settings = work->settings, .passes = work->passes},
+                              store_.folder() + "/baseline-stats.json", &reason, false);
+    baseline_seconds_ = seconds_since(last_baseline_);
+    if (!stats) return;
     json drift = read_record(store_.folder() + "/drift.json").value_or(json::array());
     drift.push_back({{"after", summary_.done + summary_.kept},
-                     {"ratio", clocked(*stats) / (*first)["time"].get<double>()}});
+                     {"ratio", clocked(*stats) / (*store_.cell(work->key))["time"].get<double>()}});
     write_record(store_.folder() + "/drift.json", drift);
+  }
+
+  void choose_baseline() {
+    double least = 0;
+    for (size_t i = 0; i < cells_.size() && i < 10; ++i) {
+      const auto work = cell_work(plan_, store_, *cells_[i]);
+      const auto record = work && work->seconds == 0 ? store_.cell(work->key) : std::nullopt;
+      if (!record || !record->contains("time")) continue;
+      const double time = (*record)["time"];
+      if (!baseline_ || time < least) baseline_ = cells_[i], least = time;
+    }
+    baseline_seconds_ = least;
   }
 
   // ---- what the user sees --------------------------------------------------------------------------------
@@ -345,6 +305,9 @@ class Runner {
   Clock::time_point cells_start_ = Clock::now();
   std::vector<const Cell*> cells_;
   std::set<std::pair<int, int>> warm_;
+  const Cell* baseline_ = nullptr;
+  double baseline_seconds_ = 0;  ///< of its process
+  Clock::time_point last_baseline_ = Clock::now();
   RunSummary summary_;
 };
 

@@ -1,25 +1,37 @@
 #pragma once
-/// Scores of pictures, apart from rendering them: a new metric re-scores what is there.
+/// Scores of pictures against one reference, which is read and prepared once.
+///
+///     const Scorer scorer("references/KEY.exr");
+///     nlohmann::json scores = scorer.score(image);   // {"rmse": 0.1, ..., "flip": 0.04, ...}
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "sweep/cell_store.h"
-#include "sweep/sweep_file.h"
+#include "core/flip_hdr.h"
+#include "core/image.h"
 
 namespace zonal {
 
-/// Every metric there is by name, linear ones first: {"rmse": 0.1, ..., "rmse_display": ...,
-/// "reference_limited": false, "reference_floor": 0.002}. Numbers JSON cannot hold are null; PSNR of equal
-/// pictures is "inf".
-nlohmann::json score_image(const std::string& image, const std::string& reference);
+class Scorer {
+ public:
+  /// `with_flip_hdr`: HDR-FLIP too, which takes as long as all else many times over.
+  explicit Scorer(const std::string& reference_file, bool with_flip_hdr = false);
 
-/// Scores of all finished cells that have none yet, in parallel, kept beside their pictures. Returns how many
-/// were made.
-int score_cells(const SweepPlan& plan, const CellStore& store);
+  /// Every metric by name: {"rmse", ..., "rmse_display", "flip", "reference_limited", "reference_floor"}.
+  /// Numbers JSON cannot hold are null; PSNR of equal pictures is "inf". Throws SceneError when the sizes
+  /// differ.
+  nlohmann::json score(const Image& image) const;
 
-/// The scores of a cell: {"matching": {...}, "full": {...}, "curve": [{"passes", "seconds", "scores"}]};
-/// empty when it has no picture.
-nlohmann::json cell_scores(const CellStore& store, const std::string& key);
+  const Image& reference() const { return file_.layers.at(""); }
+  float exposure() const { return exposure_; }
+
+ private:
+  const Image* layer(const char* name) const;
+  ImageFile file_;
+  float exposure_ = 1;
+  Image display_;
+  std::unique_ptr<FlipHdr> flip_hdr_;
+};
 
 }  // namespace zonal

@@ -34,4 +34,23 @@ Interval student_interval(const std::vector<double>& values) {
   return {mean, mean - half, mean + half};
 }
 
+Interval ratio_interval(const std::vector<double>& times, const std::vector<double>& others) {
+  double mean[2] = {0, 0}, variance[2] = {0, 0};  // of the logarithm's mean
+  const std::vector<double>* both[2] = {&times, &others};
+  double satterthwaite = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double n = static_cast<double>(both[k]->size());
+    for (const double t : *both[k]) mean[k] += std::log(t) / n;
+    if (n < 2) continue;
+    for (const double t : *both[k])
+      variance[k] += (std::log(t) - mean[k]) * (std::log(t) - mean[k]) / ((n - 1) * n);
+    satterthwaite += variance[k] * variance[k] / (n - 1);
+  }
+  const double ratio = std::exp(mean[0] - mean[1]), sum = variance[0] + variance[1];
+  if (!(satterthwaite > 0)) return {ratio, ratio, ratio};
+  const int degrees = std::max(1, static_cast<int>(sum * sum / satterthwaite));
+  const double half = student_95(degrees) * std::sqrt(2 * sum);
+  return {ratio, ratio * std::exp(-half), ratio * std::exp(half)};
+}
+
 }  // namespace zonal

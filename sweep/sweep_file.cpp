@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/backend.h"
 #include "core/error.h"
 #include "core/json_fields.h"
 #include "core/metrics.h"
@@ -45,6 +46,8 @@ void read_scenes(SweepPlan& plan, Fields& fields, const std::string& size) {
   std::vector<json> materials{json::object()};
   if (const json* replacements = fields.find("materials")) {
     materials.clear();
+    if (replacements->is_array() && replacements->empty())
+      fields.fail("materials", "found an empty list, expected at least one {\"name\": replacement}");
     for (const json& one : list_of(*replacements)) {
       if (!one.is_object())
         fields.fail("materials", "found " + describe(one) + ", expected {\"name\": replacement}");
@@ -77,6 +80,9 @@ void read_scenes(SweepPlan& plan, Fields& fields, const std::string& size) {
     if (!fs::is_regular_file(path))
       throw SceneError(fmt::format("{}: no such scene file: {}", where, path.string()));
     scene.file = path.lexically_normal().string();
+    const json content = json::parse(read_text_file(scene.file, "a scene"), nullptr, false);
+    if (content.is_object() && content.contains("integrator") && content["integrator"].is_object())
+      scene.integrator = content["integrator"];  // a broken scene complains when it is rendered
     if (scene.id.empty())
       scene.id = path.stem().string() + (scene.frame ? fmt::format("-{}", scene.frame) : "");
     if (!own_size.empty()) parse_size(own_size, where, &scene);
@@ -155,6 +161,10 @@ void read_methods(SweepPlan& plan, Fields& fields) {
         inner.fail("set", "found " + describe(set) + ", expected an object of parameters");
       inner.finish();
     }
+    for (const auto& [key, value] : set.items())
+      if (value.is_array() && value.empty())
+        throw SceneError(where_of(where_of(where, "set"), key) +
+                         ": found an empty list, expected at least one value");
     const IntegratorRow& row = find_integrator(integrator, where);
     json listed = json::object();
     for (const json& chosen : combinations(set, &listed)) {
@@ -245,6 +255,14 @@ std::string CellBudget::text() const {
   return {};
 }
 
+json method_settings(const SweepScene& scene, const SweepMethod& method) {
+  json settings = method.set;
+  if (scene.integrator.value("type", "path") == method.integrator)
+    for (const auto& [key, value] : scene.integrator.items())
+      if (!settings.contains(key) && method.parameters.contains(key)) settings[key] = method.parameters[key];
+  return settings;
+}
+
 std::string search_parameter(const SweepMethod& method, const CellBudget& budget) {
   if (method.parameters.contains(budget.search)) return budget.search;
   return budget.search.empty() && method.parameters.contains("lights") ? "lights" : "passes";
@@ -290,14 +308,8 @@ SweepPlan read_sweep(const std::string& file) {
   std::vector<std::string> backends{"cpu"};
   if (const json* given = fields.find("backends")) {
     backends.clear();
-    const std::array<std::string, 1> kBackends{"cpu"};
-    for (const json& one : list_of(*given)) {
-      const std::string name = read_text(one, fields.at("backends"));
-      if (name != "cpu")
-        fields.fail("backends", fmt::format("found {}, expected \"cpu\" (this build has no GPU backend)",
-                                            in_quotes(name)));
-      backends.push_back(name);
-    }
+    for (const json& one : list_of(*given))
+      backends.push_back(check_backend(read_text(one, fields.at("backends")), fields.at("backends")));
     if (backends.empty()) fields.fail("backends", "found an empty list, expected at least one backend");
   }
   plan.runs = fields.integer("runs", plan.runs, {1, 1000});

@@ -28,6 +28,9 @@ struct SweepScene {
   int frame = 0;
   int width = 0, height = 0;                            ///< 0: the scene's own
   nlohmann::json materials = nlohmann::json::object();  ///< name in the scene -> what replaces it
+  /// What the scene file says of its own method; a sweep sets all of it anew, so that a method means the same
+  /// in every scene.
+  nlohmann::json integrator = nlohmann::json::object();
 };
 
 /// A method with one choice of every listed parameter.
@@ -67,6 +70,10 @@ struct SweepPlan {
 
 /// Throws SceneError: file, key, what was found, what was expected, the nearest name.
 SweepPlan read_sweep(const std::string& file);
+
+/// What a method is told in a scene: the sweep file's settings and, where the scene file has some for this
+/// method, the value the sweep takes instead.
+nlohmann::json method_settings(const SweepScene& scene, const SweepMethod& method);
 
 /// The count that an equal budget changes: what the file says where the method has it, else `lights`, else
 /// "passes".

@@ -54,6 +54,7 @@ std::vector<Row> rows_of(const json& results, const std::vector<std::string>& me
     row.columns = {group["scene"], method, group["budget"]};
     const json& time = group["time"];
     row.columns.push_back(time.is_null() ? "-" : fmt::format("{:.3g}", time["median"].get<double>()));
+    row.columns.push_back(group["time_ratio"].is_null() ? "" : interval(group["time_ratio"], plus_minus));
     for (const std::string& metric : metrics) {
       const json& scores = group["scores"];
       row.columns.push_back(scores.contains(metric) ? interval(scores[metric], plus_minus) : "-");
@@ -85,7 +86,7 @@ std::vector<std::string> shown_metrics(const json& results) {
 }
 
 std::vector<std::string> headings(const std::vector<std::string>& metrics) {
-  std::vector<std::string> all{"scene", "method", "budget", "seconds"};
+  std::vector<std::string> all{"scene", "method", "budget", "seconds", "ratio"};
   all.insert(all.end(), metrics.begin(), metrics.end());
   for (const char* more : {"noise", "bias", "note"}) all.push_back(more);
   return all;
@@ -132,7 +133,8 @@ std::string table_markdown(const json& results) {
   text += "|\n";
   for (const Row& row : rows_of(results, metrics, "±")) line(row.columns);
   text +=
-      "\nMean and 95 % interval over seeds; seconds: median of begin_pass plus radiance. noise: what seeds "
+      "\nMean and 95 % interval over seeds; seconds: median of begin_pass plus radiance; ratio: to the "
+      "scene's first method, a repeat of the sweep falls inside in 95 % of cases. noise: what seeds "
       "differ by; bias: "
       "what their mean is off by (both linear RMS).\n";
   for (const json& metric : results["metrics"])

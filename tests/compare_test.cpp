@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/flip_hdr.h"
 #include "core/image.h"
 #include "core/metrics.h"
 #include "core/reference.h"
@@ -80,13 +81,25 @@ TEST_F(Compare, json_has_exactly_the_promised_keys_in_order) {
   EXPECT_EQ(json["linear"]["nan"], 0);
 }
 
+TEST_F(Compare, flip_of_radiance_is_added_when_asked_for_and_drawn) {
+  const Image x = noise(16, 16, 1), r = noise(16, 16, 2);
+  write("x.exr", x);
+  write("r.exr", r);
+  const Json json = Json::parse(zonal("compare x.exr r.exr --json --flip-hdr --flip-map flip.png"));
+  EXPECT_EQ(json["linear"]["flip_hdr"], mean_of_map(FlipHdr(r).map(x)));
+  EXPECT_EQ(json["display"]["flip"], mean_of_map(flip_map(to_display(x, 1), to_display(r, 1))));
+  const ImageFile map = read_image(path("flip.png"));
+  EXPECT_EQ(map.layers.at("").height, 16);
+  EXPECT_GT(std::stof(map.metadata.at("error_map_high")), 0);
+}
+
 TEST_F(Compare, identical_pictures_have_an_infinite_psnr_and_small_ones_no_ssim) {
   write("x.exr", noise(10, 30, 1));
   const Json json = Json::parse(zonal("compare x.exr x.exr --json"));
   EXPECT_EQ(json["linear"]["rmse"], 0);
   EXPECT_EQ(json["display"]["psnr"], "inf");
   EXPECT_TRUE(json["display"]["ssim"].is_null());
-  EXPECT_TRUE(json["display"]["flip"].is_null());
+  EXPECT_EQ(json["display"]["flip"], 0);
 }
 
 TEST_F(Compare, png_pairs_have_display_metrics_only) {

@@ -1,67 +1,25 @@
-// `zonal sweep`: its files, searches, statistics, processes and what it leaves behind.
+// `zonal sweep`: its files, searches, statistics and processes. Whole sweeps: sweep_run_test.cpp.
 
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <set>
-#include <sstream>
-#include <thread>
 
 #include "core/error.h"
 #include "sweep/cell_store.h"
+#include "sweep/picture_script.h"
 #include "sweep/process.h"
-#include "sweep/report.h"
 #include "sweep/search.h"
 #include "sweep/statistics.h"
 #include "sweep/sweep_file.h"
-#include "tests/paths.h"
+#include "tests/sweep_support.h"
 
 namespace zonal {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
-
-const std::string kScene = test::source_dir() + "/scenes/cornell/cornell.json";
-
-/// A folder that goes away with the test.
-struct Folder {
-  std::string path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "zonal-sweep-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path + "/" + name) << text;
-    return path + "/" + name;
-  }
-};
-
-std::string text_of(const std::string& file) {
-  std::ifstream in(file);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-json small_sweep() {
-  return {{"name", "small"},
-          {"scenes", {kScene}},
-          {"size", "24x16"},
-          {"seeds", 2},
-          {"runs", 1},
-          {"budget", {{"passes", 2}}},
-          {"reference", {{"passes", 4}}},
-          {"methods", {"path", {{"integrator", "vpl"}, {"set", {{"lights", {4, 16}}}}}}}};
-}
 
 /// What reading this sweep complains of.
 std::string complaint(const json& sweep) {
@@ -72,11 +30,6 @@ std::string complaint(const json& sweep) {
     return error.what();
   }
   return "nothing";
-}
-
-int sweep(const std::string& file, const std::string& out) {
-  const ProcessResult result = run_process({test::program(), "sweep", file, "-o", out, "--quiet"}, nullptr);
-  return result.signal ? -result.signal : result.exit_code;
 }
 
 // ---- statistics -----------------------------------------------------------------------------------------
@@ -107,6 +60,30 @@ TEST(SweepStatistics, an_interval_holds_the_true_mean_in_95_percent_of_cases) {
 TEST(SweepStatistics, median_of_odd_and_even_numbers) {
   EXPECT_EQ(median({5, 1, 3}), 3);
   EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
+}
+
+TEST(SweepStatistics, a_repeated_ratio_falls_into_the_interval_in_95_percent_of_cases) {
+  // Times of two methods scatter by 2 and 5 %; the measurement is made twice.
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0, 1);
+  const auto measured = [&](double time, double scatter) {
+    std::vector<double> times(5);
+    for (double& t : times) t = time * std::exp(scatter * normal(random));
+    return times;
+  };
+  int held = 0;
+  constexpr int kTrials = 4000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Interval first = ratio_interval(measured(3, 0.02), measured(2, 0.05));
+    const double again = ratio_interval(measured(3, 0.02), measured(2, 0.05)).mean;
+    held += first.low <= again && again <= first.high;
+  }
+  // Welch's degrees are estimated and rounded down, which errs on the wide side: from 95 % less 4 standard
+  // deviations of the count (0.0138) up to 98 %.
+  EXPECT_GT(double(held) / kTrials, 0.95 - 0.0138);
+  EXPECT_LT(double(held) / kTrials, 0.98);
+  EXPECT_NEAR(ratio_interval({2, 8}, {2, 2}).mean, 2, 1e-12);  // the geometric mean of 2 and 8 is 4
+  EXPECT_EQ(ratio_interval({3}, {2}).high, 1.5);
 }
 
 // ---- searches -------------------------------------------------------------------------------------------
@@ -173,7 +150,14 @@ TEST(SweepFile, every_mistake_is_one_line_with_its_place_and_the_nearest_name) {
       {json::json_pointer("/seeds"), 0},
       {json::json_pointer("/size"), "24"},
       {json::json_pointer("/backends"), {"gpu"}},
+      {json::json_pointer("/backends"), {"gl"}},
+      {json::json_pointer("/backends"), json::array()},
       {json::json_pointer("/bugdet"), 1},
+      {json::json_pointer("/methods/1/set/lights"), json::array()},
+      {json::json_pointer("/materials"), json::array()},
+      {json::json_pointer("/budget"), json::array()},
+      {json::json_pointer("/budget"), {{"passes", 2}, {"metric", "rmse"}}},
+      {json::json_pointer("/reference"), {{"passes", 2}, {"seconds", 1}}},
   };
   const std::string kExpected[] = {"no such scene", "at least one scene",
                                    "\"path\"",      "at least one method",
@@ -181,7 +165,12 @@ TEST(SweepFile, every_mistake_is_one_line_with_its_place_and_the_nearest_name) {
                                    "\"rmse\"",      "exactly one",
                                    "\"passes\" or", "\"rmse\"",
                                    "seeds",         "320x180",
-                                   "cpu",           "\"budget\""};
+                                   "cpu",           "no GPU backend",
+                                   "at least one",  "\"budget\"",
+                                   "at least one",  "at least one",
+                                   "at least one",  "metric",
+                                   "expected one"};
+  static_assert(std::size(kWrong) == std::size(kExpected));
   size_t i = 0;
   for (const auto& [where, value] : kWrong) {
     json sweep = small_sweep();
@@ -207,6 +196,18 @@ TEST(SweepFile, a_key_changes_with_everything_that_determines_the_pixels) {
             cell_key(plan, plan.cells[0], plan.methods[0].parameters, plan.budgets[0]));
 }
 
+TEST(SweepFile, a_method_means_the_same_where_the_scene_has_settings_for_it) {
+  const Folder folder;
+  json scene = json::parse(text_of(kScene));
+  scene["integrator"] = {{"type", "vpl"}, {"clamp", 0.2}, {"lights", 7}};
+  json sweep = small_sweep();
+  sweep["scenes"] = {folder.write("own.json", scene.dump())};
+  const SweepPlan plan = read_sweep(folder.write("s.json", sweep.dump()));
+  EXPECT_EQ(method_settings(plan.scenes[0], plan.methods[1]), json({{"lights", 4}, {"clamp", 0.0}}));
+  EXPECT_EQ(method_settings(plan.scenes[0], plan.methods[0]),
+            json::object());  // the scene is silent about path
+}
+
 // ---- processes ------------------------------------------------------------------------------------------
 
 TEST(SweepProcess, tells_how_a_process_ended) {
@@ -221,84 +222,6 @@ TEST(SweepProcess, tells_how_a_process_ended) {
   EXPECT_EQ(missing.exit_code, 127);
   std::atomic<bool> stop = true;
   EXPECT_TRUE(run_process({"/bin/sleep", "60"}, &stop).interrupted);
-}
-
-// ---- whole sweeps ---------------------------------------------------------------------------------------
-
-TEST(Sweep, runs_reports_and_does_nothing_twice) {
-  const Folder folder;
-  const std::string file = folder.write("s.json", small_sweep().dump()), out = folder.path + "/out";
-  ASSERT_EQ(sweep(file, out), 0);
-  for (const char* name : {"index.html", "data.js", "results.json", "results.csv", "table.md", "table.tex"})
-    EXPECT_TRUE(fs::exists(out + "/" + name)) << name;
-  const json results = json::parse(text_of(out + "/results.json"));
-  ASSERT_EQ(results["cells"].size(), 6u);
-  for (const json& cell : results["cells"]) {
-    EXPECT_EQ(cell["status"], "done") << cell["reason"];
-    EXPECT_GT(cell["scores"]["rmse"].get<double>(), 0);
-    EXPECT_TRUE(fs::exists(out + "/" + cell["image"].get<std::string>()));
-  }
-  const auto before =
-      fs::last_write_time(out + "/cells/" + results["cells"][0]["id"].get<std::string>() + "/cell.json");
-  ASSERT_EQ(sweep(file, out), 0);
-  EXPECT_EQ(
-      fs::last_write_time(out + "/cells/" + results["cells"][0]["id"].get<std::string>() + "/cell.json"),
-      before);
-}
-
-TEST(Sweep, another_sweeps_folder_and_a_folder_of_other_things_are_refused) {
-  const Folder folder;
-  json one = small_sweep(), other = small_sweep();
-  one["methods"] = other["methods"] = {"path"};
-  other["name"] = "other";
-  const std::string out = folder.path + "/out";
-  ASSERT_EQ(sweep(folder.write("a.json", one.dump()), out), 0);
-  EXPECT_EQ(sweep(folder.write("b.json", other.dump()), out), 2);
-  EXPECT_EQ(sweep(folder.path + "/a.json", folder.path), 2);  // holds a.json, no sweep
-}
-
-TEST(Sweep, a_cell_that_fails_is_a_row_with_its_reason) {
-  const Folder folder;
-  json sweep_json = small_sweep();
-  // The scene exists, and is none.
-  sweep_json["scenes"] = {kScene, folder.write("broken.json", "{\"camera\": {}}")};
-  sweep_json["methods"] = {"path"};
-  const std::string out = folder.path + "/out";
-  const int code = sweep(folder.write("s.json", sweep_json.dump()), out);
-  EXPECT_EQ(code, 1);
-  const json results = json::parse(text_of(out + "/results.json"));
-  int failed = 0;
-  for (const json& cell : results["cells"]) {
-    if (cell["status"] != "failed") continue;
-    ++failed;
-    EXPECT_NE(cell["reason"].get<std::string>().find("broken.json"), std::string::npos) << cell["reason"];
-  }
-  EXPECT_EQ(failed, 2);
-}
-
-TEST(Sweep, killed_at_random_moments_it_resumes_to_the_same_table) {
-  const Folder folder;
-  const std::string file = folder.write("s.json", small_sweep().dump());
-  ASSERT_EQ(sweep(file, folder.path + "/whole"), 0);
-  std::mt19937 random(3);
-  const std::string out = folder.path + "/killed";
-  for (int kill_count = 0; kill_count < 6; ++kill_count) {
-    const pid_t child = fork();
-    if (child == 0) {
-      execl(test::program().c_str(), "zonal", "sweep", file.c_str(), "-o", out.c_str(), "--quiet", nullptr);
-      _exit(127);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 700));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
-  }
-  ASSERT_EQ(sweep(file, out), 0);
-  const json a = json::parse(text_of(folder.path + "/whole/results.json")),
-             b = json::parse(text_of(out + "/results.json"));
-  for (size_t i = 0; i < a["cells"].size(); ++i) {
-    EXPECT_EQ(a["cells"][i]["id"], b["cells"][i]["id"]);
-    EXPECT_EQ(a["cells"][i]["scores"], b["cells"][i]["scores"]);
-  }
 }
 
 // ---- pictures -------------------------------------------------------------------------------------------

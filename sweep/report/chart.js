@@ -67,7 +67,7 @@ const Chart = (() => {
               {},
               h("figcaption", {}, scene.name),
               h("img", {
-                src: `charts/${scene.id}.svg`,
+                src: scene.chart ?? `charts/${scene.id}.svg`,
                 alt: `Error against time in ${scene.name}, a point for each group of seeds`,
               }),
             ),

@@ -63,6 +63,18 @@ const Columns = (() => {
               hint: "95 % interval of the mean over seeds",
               ...interval((group) => group.time),
             },
+            ...(model.groups.some((group) => group.time_ratio)
+              ? [
+                  {
+                    key: "ratio",
+                    heading: "time ratio",
+                    best: "low",
+                    hint: "to the scene's first method; in the interval the same sweep again falls in 95 % of cases",
+                    value: (row) => row.group?.time_ratio?.mean,
+                    show: (row) => ratio_text(row.group?.time_ratio),
+                  },
+                ]
+              : []),
           ]),
       metric_column(metric, key, score, true),
       ...(cells
@@ -119,6 +131,8 @@ const Columns = (() => {
       value: (row) => score(row, key),
     };
   }
+
+  const ratio_text = (ratio) => (ratio ? `${Format.number(ratio.mean)} ${Format.interval(ratio)}` : "–");
 
   const half = (bounds) =>
     Number.isFinite(bounds?.low) && Number.isFinite(bounds?.high) ? (bounds.high - bounds.low) / 2 : null;

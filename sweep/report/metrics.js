@@ -12,6 +12,7 @@ const Metrics = (() => {
     psnr: "PSNR",
     ssim: "SSIM",
     flip: "FLIP",
+    flip_hdr: "HDR-FLIP",
     nan: "NaN pixels",
   };
 
