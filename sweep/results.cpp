@@ -85,12 +85,16 @@ json cell_json(const SweepPlan& plan, const CellStore& store, const Cell& cell) 
   return out;
 }
 
-/// The seeds' times, which stand apart in the shuffled order and so hold the machine's drift; of a single
-/// seed, those of its runs.
+/// The seeds' times, which stand apart in the shuffled order and so hold the machine's drift; of fewer than
+/// three seeds, which tell no scatter, those of all runs.
 std::vector<double> times_of(const std::vector<const json*>& cells) {
   std::vector<double> times;
-  for (const json* cell : cells) times.push_back((*cell)["time"]);
-  if (cells.size() == 1) times = (*cells[0])["runs"].get<std::vector<double>>();
+  for (const json* cell : cells) {
+    if (cells.size() >= 3)
+      times.push_back((*cell)["time"]);
+    else
+      for (const json& run : (*cell)["runs"]) times.push_back(run);
+  }
   return times;
 }
 
@@ -258,11 +262,13 @@ json result_metrics(const SweepPlan& plan) {
     if (name == "flip_hdr" && std::find(plan.metrics.begin(), plan.metrics.end(), name) == plan.metrics.end())
       return;
     const bool higher = info.name == "psnr" || info.name == "ssim";
-    list.push_back({{"name", name},
-                    {"values", info.values},
-                    {"better", higher ? "higher" : "lower"},
-                    {"unit", info.unit},
-                    {"formula", info.summary}});
+    list.push_back(
+        {{"name", name},
+         {"values", info.values},
+         {"named", std::find(plan.metrics.begin(), plan.metrics.end(), name) != plan.metrics.end()},
+         {"better", higher ? "higher" : "lower"},
+         {"unit", info.unit},
+         {"formula", info.summary}});
   };
   for (const std::string& name : plan.metrics)
     for (const MetricInfo& info : metric_infos())

@@ -77,11 +77,11 @@ std::vector<Row> rows_of(const json& results, const std::vector<std::string>& me
   return rows;
 }
 
-/// The first four metrics: those the sweep file names.
+/// The metrics that the sweep file names.
 std::vector<std::string> shown_metrics(const json& results) {
   std::vector<std::string> names;
   for (const json& metric : results["metrics"])
-    if (names.size() < 4) names.push_back(metric["name"]);
+    if (metric["named"].get<bool>()) names.push_back(metric["name"]);
   return names;
 }
 
