@@ -261,6 +261,8 @@ class Runner {
     const auto stats = render(*baseline_, {.settings = work->settings, .passes = work->passes},
                               store_.folder() + "/baseline-stats.json", &reason, false);
     baseline_seconds_ = seconds_since(last_baseline_);
+    std::error_code error;
+    fs::remove(store_.folder() + "/baseline-stats.json", error);
     if (!stats) return;
     json drift = read_record(store_.folder() + "/drift.json").value_or(json::array());
     drift.push_back({{"after", summary_.done + summary_.kept},
