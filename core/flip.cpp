@@ -14,11 +14,12 @@ using Plane = std::vector<float>;
 
 // ---- colours ----------------------------------------------------------------------------------------------
 
-/// sRGB's primaries and white (IEC 61966-2-1) as a matrix to XYZ, row by row, and its inverse.
-constexpr float kToXyz[9] = {0.412391f, 0.357584f, 0.180481f, 0.212639f, 0.715169f,
-                             0.072192f, 0.019331f, 0.119195f, 0.950532f};
-constexpr float kToRgb[9] = {3.240970f, -1.537383f, -0.498611f, -0.969244f, 1.875968f,
-                             0.041555f, 0.055630f,  -0.203977f, 1.056972f};
+/// sRGB's primaries and white (IEC 61966-2-1) as a matrix to XYZ, row by row, and its inverse; to the digits
+/// that the authors' program has, whose white is (0.950429, 1, 1.088900).
+constexpr float kToXyz[9] = {0.412386563f,  0.357591491f,  0.180450491f, 0.212636822f, 0.715182982f,
+                             0.0721801965f, 0.0193306202f, 0.119197164f, 0.950372587f};
+constexpr float kToRgb[9] = {3.24100323f,   -1.53739897f,  -0.498615882f, -0.969224252f, 1.87592998f,
+                             0.0415542263f, 0.0556394199f, -0.204011206f, 1.05714898f};
 constexpr float kWhite[3] = {kToXyz[0] + kToXyz[1] + kToXyz[2], kToXyz[3] + kToXyz[4] + kToXyz[5],
                              kToXyz[6] + kToXyz[7] + kToXyz[8]};
 
@@ -172,8 +173,8 @@ Plane length_of(const Plane& x, const Plane& y) {
   return length;
 }
 
-/// Edges and points of the lightness in [0,1]: derivatives of a Gaussian 0.082 degrees wide.
-void find_features(const Plane& lightness, float ppd, FlipView* view) {
+/// Edges and points of the luminance: derivatives of a Gaussian 0.082 degrees wide.
+void find_features(const Plane& luminance, float ppd, FlipView* view) {
   const double sigma = 0.5 * 0.082 * ppd;
   const int reach = static_cast<int>(std::ceil(3 * sigma)), w = view->width, h = view->height;
   const auto gaussian = [&](int i) { return std::exp(-i * i / (2 * sigma * sigma)); };
@@ -181,10 +182,10 @@ void find_features(const Plane& lightness, float ppd, FlipView* view) {
   const Filter slope = Filter(reach, [&](int i) { return -i * gaussian(i); }).normalized();
   const Filter bend =
       Filter(reach, [&](int i) { return (i * i / (sigma * sigma) - 1) * gaussian(i); }).normalized();
-  const Plane along = filtered_rows(lightness, w, h, smooth);
-  view->edges = length_of(filtered_columns(filtered_rows(lightness, w, h, slope), w, h, smooth),
+  const Plane along = filtered_rows(luminance, w, h, smooth);
+  view->edges = length_of(filtered_columns(filtered_rows(luminance, w, h, slope), w, h, smooth),
                           filtered_columns(along, w, h, slope));
-  view->points = length_of(filtered_columns(filtered_rows(lightness, w, h, bend), w, h, smooth),
+  view->points = length_of(filtered_columns(filtered_rows(luminance, w, h, bend), w, h, smooth),
                            filtered_columns(along, w, h, bend));
 }
 
@@ -230,25 +231,24 @@ FlipView flip_view(const Image& rgb, float ppd) {
   FlipView view{
       .width = rgb.width, .height = rgb.height, .lightness = {}, .a = {}, .b = {}, .edges = {}, .points = {}};
   const size_t count = size_t(rgb.width) * rgb.height;
-  // YCxCz, a linearised L*a*b*.
-  Plane achromatic(count), red_green(count), blue_yellow(count), lightness(count);
+  // YCxCz, a linearised L*a*b*, without its factors and its shift: they pass the blur unchanged, and near
+  // black they would cost digits.
+  Plane luminance(count), red_green(count), blue_yellow(count);
   for (size_t i = 0; i < count; ++i) {
     const float* c = rgb.pixels.data() + 3 * i;
-    const float x = dot(kToXyz, c[0], c[1], c[2]) / kWhite[0],
-                y = dot(kToXyz + 3, c[0], c[1], c[2]) / kWhite[1],
-                z = dot(kToXyz + 6, c[0], c[1], c[2]) / kWhite[2];
-    achromatic[i] = 116 * y - 16, red_green[i] = 500 * (x - y), blue_yellow[i] = 200 * (y - z);
-    lightness[i] = y;  // (Y + 16) / 116
+    const float y = dot(kToXyz + 3, c[0], c[1], c[2]) / kWhite[1];
+    luminance[i] = y;
+    red_green[i] = dot(kToXyz, c[0], c[1], c[2]) / kWhite[0] - y;
+    blue_yellow[i] = y - dot(kToXyz + 6, c[0], c[1], c[2]) / kWhite[2];
   }
-  find_features(lightness, ppd, &view);
-  view.lightness = blurred(achromatic, view.width, view.height, ppd, {kAchromatic});
+  find_features(luminance, ppd, &view);
+  view.lightness = blurred(luminance, view.width, view.height, ppd, {kAchromatic});
   view.a = blurred(red_green, view.width, view.height, ppd, {kRedGreen});
   view.b = blurred(blue_yellow, view.width, view.height, ppd, {kBlueYellow[0], kBlueYellow[1]});
   // Back to RGB, which the blur may have left, and on to L*a*b*.
   for (size_t i = 0; i < count; ++i) {
-    const float y = (view.lightness[i] + 16) / 116;
-    const float X = kWhite[0] * (y + view.a[i] / 500), Y = kWhite[1] * y,
-                Z = kWhite[2] * (y - view.b[i] / 200);
+    const float y = view.lightness[i];
+    const float X = kWhite[0] * (y + view.a[i]), Y = kWhite[1] * y, Z = kWhite[2] * (y - view.b[i]);
     const auto clamped = [&](const float* row) { return std::clamp(dot(row, X, Y, Z), 0.0f, 1.0f); };
     const Lab lab = hunt_lab(clamped(kToRgb), clamped(kToRgb + 3), clamped(kToRgb + 6));
     view.lightness[i] = lab.l, view.a[i] = lab.a, view.b[i] = lab.b;

@@ -19,7 +19,7 @@ inline constexpr float kFlipPixelsPerDegree = 67.0206433f;  // 0.7 (3840 / 0.7) 
 struct FlipView {
   int width = 0, height = 0;
   std::vector<float> lightness, a, b;  ///< L*a*b* of the blurred picture, a and b by Hunt's effect
-  std::vector<float> edges, points;    ///< strength of first and second derivatives of its lightness
+  std::vector<float> edges, points;    ///< strength of first and second derivatives of its luminance
 };
 
 /// Linear RGB in [0,1], three finite channels.

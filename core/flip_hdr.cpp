@@ -58,7 +58,7 @@ FlipExposures flip_exposures(const Image& reference) {
   for (int y = 0; y < reference.height; ++y)
     for (int x = 0; x < reference.width; ++x) {
       const vec3 c = reference.rgb(x, y);
-      if (is_finite(c)) luminances.push_back(0.212639 * c.x + 0.715169 * c.y + 0.072192 * c.z);
+      if (is_finite(c)) luminances.push_back(0.212636822 * c.x + 0.715182982 * c.y + 0.0721801965 * c.z);
     }
   if (luminances.empty()) return {};
   std::sort(luminances.begin(), luminances.end());

@@ -83,7 +83,7 @@ TEST(SweepStatistics, a_repeated_ratio_falls_into_the_interval_in_95_percent_of_
   EXPECT_GT(double(held) / kTrials, 0.95 - 0.0138);
   EXPECT_LT(double(held) / kTrials, 0.98);
   EXPECT_NEAR(ratio_interval({2, 8}, {2, 2}).mean, 2, 1e-12);  // the geometric mean of 2 and 8 is 4
-  EXPECT_EQ(ratio_interval({3}, {2}).high, 1.5);
+  EXPECT_DOUBLE_EQ(ratio_interval({3}, {2}).high, 1.5);
 }
 
 // ---- searches -------------------------------------------------------------------------------------------
