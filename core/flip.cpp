@@ -210,21 +210,6 @@ float redistributed(float difference, float largest) {
                            : kShare + (difference - knee) / (largest - knee) * (1 - kShare);
 }
 
-/// Both in linear light. Where one of them is no number, both show the reference's colour, or black.
-std::pair<Image, Image> comparable(const Image& image, const Image& reference) {
-  std::pair<Image, Image> pair{Image(image.width, image.height), Image(image.width, image.height)};
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const vec3 r = is_finite(reference.rgb(x, y)) ? reference.rgb(x, y) : vec3(0);
-      const bool usable = is_finite(image.rgb(x, y)) && is_finite(reference.rgb(x, y));
-      const vec3 v = usable ? image.rgb(x, y) : r;
-      for (int c = 0; c < 3; ++c)
-        pair.first.at(x, y)[c] = srgb_decode(v[c]), pair.second.at(x, y)[c] = srgb_decode(r[c]);
-    }
-  }
-  return pair;
-}
-
 }  // namespace
 
 FlipView flip_view(const Image& rgb, float ppd) {
@@ -270,14 +255,38 @@ Image flip_difference(const FlipView& x, const FlipView& r) {
   return map;
 }
 
-Image flip_map(const Image& image, const Image& reference, float pixels_per_degree) {
-  const auto [x, r] = comparable(image, reference);
-  Image map = flip_difference(flip_view(x, pixels_per_degree), flip_view(r, pixels_per_degree));
-  for (int v = 0; v < map.height; ++v)
-    for (int u = 0; u < map.width; ++u)
-      if (!is_finite(image.rgb(u, v)) || !is_finite(reference.rgb(u, v)))
-        *map.at(u, v) = std::numeric_limits<float>::quiet_NaN();
+FlipReference::FlipReference(const Image& reference, float pixels_per_degree)
+    : pixels_per_degree_(pixels_per_degree), linear_(reference.width, reference.height) {
+  for (int y = 0; y < linear_.height; ++y) {
+    for (int x = 0; x < linear_.width; ++x) {
+      const vec3 c = reference.rgb(x, y);
+      usable_.push_back(is_finite(c));
+      for (int k = 0; k < 3; ++k) linear_.at(x, y)[k] = usable_.back() ? srgb_decode(c[k]) : 0;
+    }
+  }
+  view_ = flip_view(linear_, pixels_per_degree_);
+}
+
+Image FlipReference::map(const Image& image) const {
+  // What is no number shows the reference's colour, so that its neighbours see no difference there.
+  Image shown = linear_;
+  std::vector<bool> usable = usable_;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const vec3 c = image.rgb(x, y);
+      const size_t i = size_t(y) * image.width + x;
+      usable[i] = usable[i] && is_finite(c);
+      for (int k = 0; k < 3 && usable[i]; ++k) shown.at(x, y)[k] = srgb_decode(c[k]);
+    }
+  }
+  Image map = flip_difference(flip_view(shown, pixels_per_degree_), view_);
+  for (size_t i = 0; i < usable.size(); ++i)
+    if (!usable[i]) map.pixels[i] = std::numeric_limits<float>::quiet_NaN();
   return map;
+}
+
+Image flip_map(const Image& image, const Image& reference, float pixels_per_degree) {
+  return FlipReference(reference, pixels_per_degree).map(image);
 }
 
 double mean_of_map(const Image& map) {

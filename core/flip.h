@@ -28,8 +28,22 @@ FlipView flip_view(const Image& linear_rgb, float pixels_per_degree = kFlipPixel
 /// Difference of two views of equal size: one channel, 0 (none seen) to 1.
 Image flip_difference(const FlipView& x, const FlipView& r);
 
-/// FLIP of display-encoded pictures of equal size. NaN where either has a NaN; its neighbours see no
-/// difference there.
+/// A display-encoded reference, looked at once for many pictures.
+class FlipReference {
+ public:
+  explicit FlipReference(const Image& reference, float pixels_per_degree = kFlipPixelsPerDegree);
+  /// FLIP of a display-encoded picture of the same size. NaN where either has a NaN; its neighbours see no
+  /// difference there.
+  Image map(const Image& image) const;
+
+ private:
+  float pixels_per_degree_;
+  Image linear_;  ///< black where the reference is no number
+  std::vector<bool> usable_;
+  FlipView view_;
+};
+
+/// FLIP of one pair.
 Image flip_map(const Image& image, const Image& reference, float pixels_per_degree = kFlipPixelsPerDegree);
 
 /// Mean of the pixels that are numbers; NaN when none is.

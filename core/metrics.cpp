@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/flip.h"
 
 namespace zonal {
 namespace {
@@ -204,7 +203,7 @@ Image to_display(const Image& linear, float exposure) {
   return display;
 }
 
-DisplayMetrics display_metrics(const Image& image, const Image& reference) {
+DisplayMetrics display_metrics(const Image& image, const Image& reference, const FlipReference* flip) {
   require_same_size(image, reference);
   const std::vector<bool> usable = usable_pixels(image, reference);
   const size_t count = std::count(usable.begin(), usable.end(), true);
@@ -222,7 +221,7 @@ DisplayMetrics display_metrics(const Image& image, const Image& reference) {
   metrics.psnr = -20 * std::log10(metrics.rmse);  // infinity when nothing differs
   const bool large_enough = image.width >= kSsimWindow && image.height >= kSsimWindow;
   metrics.ssim = large_enough ? ssim(image, reference) : kNaN;
-  metrics.flip = mean_of_map(flip_map(image, reference));
+  metrics.flip = mean_of_map(flip ? flip->map(image) : flip_map(image, reference));
   return metrics;
 }
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "core/flip.h"
 
 namespace zonal {
 
@@ -46,8 +46,9 @@ struct DisplayMetrics {
 /// The halves and the variance of the mean belong to a cached reference and may be absent.
 LinearMetrics linear_metrics(const Image& image, const Image& reference, const Image* half_a = nullptr,
                              const Image* half_b = nullptr, const Image* variance = nullptr);
-/// Display-encoded inputs (see `to_display`).
-DisplayMetrics display_metrics(const Image& image, const Image& reference);
+/// Display-encoded inputs (see `to_display`). `flip`: the reference made ready for FLIP, where it is at hand.
+DisplayMetrics display_metrics(const Image& image, const Image& reference,
+                               const FlipReference* flip = nullptr);
 /// Three channels; a pixel with a non-finite channel becomes NaN.
 Image to_display(const Image& linear, float exposure);
 /// Mean SSIM of Wang et al. 2004 on luminance: 11x11 Gaussian window, sigma 1.5, K1 0.01, K2 0.03, population

@@ -223,7 +223,8 @@ class Runner {
     say(cell_name(plan_, cell));
     const std::string folder = store_.cell_folder(work->key);
     make_folder(folder);
-    warm_up(cell, work->settings, folder);
+    // A budget in seconds is its own time, and loading is not part of it.
+    if (work->seconds == 0) warm_up(cell, work->settings, folder);
     json record{{"key", work->key}, {"status", "done"}, {"reason", ""}, {"search", work->search}};
     CellRender what{.settings = work->settings, .passes = work->passes, .seconds = work->seconds};
     std::vector<double> runs;

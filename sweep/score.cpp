@@ -21,6 +21,7 @@ Scorer::Scorer(const std::string& reference_file, bool with_flip_hdr) : file_(re
   const auto found = file_.metadata.find("exposure");
   if (found != file_.metadata.end()) exposure_ = std::stof(found->second);
   display_ = to_display(reference(), exposure_);
+  flip_ = std::make_unique<FlipReference>(display_);
   if (with_flip_hdr) flip_hdr_ = std::make_unique<FlipHdr>(reference());
 }
 
@@ -31,7 +32,7 @@ const Image* Scorer::layer(const char* name) const {
 
 json Scorer::score(const Image& image) const {
   const LinearMetrics linear = linear_metrics(image, reference(), layer("A"), layer("B"), layer("variance"));
-  const DisplayMetrics display = display_metrics(to_display(image, exposure_), display_);
+  const DisplayMetrics display = display_metrics(to_display(image, exposure_), display_, flip_.get());
   json scores = {{"rmse", number(linear.rmse)},           {"mae", number(linear.mae)},
                  {"relmse", number(linear.relmse)},       {"relmse_trimmed", number(linear.relmse_trimmed)},
                  {"smape", number(linear.smape)},         {"bias", number(linear.bias)},

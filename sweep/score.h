@@ -31,6 +31,7 @@ class Scorer {
   ImageFile file_;
   float exposure_ = 1;
   Image display_;
+  std::unique_ptr<FlipReference> flip_;
   std::unique_ptr<FlipHdr> flip_hdr_;
 };
 
