@@ -94,7 +94,9 @@ std::string cell_key(const SweepPlan& plan, const Cell& cell, const json& settin
                           .seed = cell.seed,
                           .materials = scene.materials,
                           .pixels = plan.pixels}));
-  hash.add(fmt::format("{} {} {} {} {} {}", ZONAL_VERSION, cell.backend, budget.text(),
+  const std::string spent =
+      budget.kind == CellBudget::passes ? fmt::format("{:.0f} passes", budget.value) : budget.text();
+  hash.add(fmt::format("{} {} {} {} {} {}", ZONAL_VERSION, cell.backend, spent,
                        static_cast<int>(plan.pixels), plan.threads, plan.runs));
   return hash.text();
 }

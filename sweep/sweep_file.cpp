@@ -244,7 +244,7 @@ void check_search(const SweepPlan& plan, const CellBudget& budget, const std::st
 std::string CellBudget::text() const {
   switch (kind) {
     case passes:
-      return fmt::format("{:.0f} passes", value);
+      return fmt::format("{:.0f} {}", value, value == 1 ? "pass" : "passes");
     case seconds:
       return fmt::format("{:g} s", value);
     case equal_time:

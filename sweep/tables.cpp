@@ -35,7 +35,9 @@ std::string latex(const std::string& text) {
 /// "0.1234 +- 0.002": mean and half of its 95 % interval.
 std::string interval(const json& score, const char* plus_minus) {
   const double mean = score["mean"], half = 0.5 * (score["high"].get<double>() - score["low"].get<double>());
-  return half > 0 ? fmt::format("{:.4g} {} {:.1g}", mean, plus_minus, half) : fmt::format("{:.4g}", mean);
+  if (!(half > 0)) return fmt::format("{:.4g}", mean);
+  return fmt::format("{:.4g} {} {}", mean, plus_minus,
+                     half < 10 ? fmt::format("{:.1g}", half) : fmt::format("{:.0f}", half));
 }
 
 struct Row {

@@ -111,17 +111,30 @@ const Chart = (() => {
       + "was scored at its end alone is a point. Click a point to see the last picture.",
   };
 
+  /// Floors whose words would lie on top of each other share a line.
+  function apart(floors) {
+    const lines = [];
+    for (const floor of floors.sort((a, b) => a.value - b.value)) {
+      const last = lines.at(-1);
+      if (last && floor.value < 1.2 * last.value) last.label += `; ${floor.label.replace("reference: ", "")}`;
+      else lines.push(floor);
+    }
+    return lines;
+  }
+
   /// What both charts of a scene share.
   function common(page, scene) {
     const axis = Metrics.axis(page.metric),
       key = Metrics.key(page.metric);
     const references = Model.references_of(page.model, scene);
-    const floors = references
-      .map((r) => ({
-        value: axis.value(r.floor?.[key]),
-        label: references.length > 1 ? `reference: ${r.transport}` : "reference's own error",
-      }))
-      .filter((floor) => floor.value !== null && floor.value > 0);
+    const floors = apart(
+      references
+        .map((r) => ({
+          value: axis.value(r.floor?.[key]),
+          label: references.length > 1 ? `reference: ${r.transport}` : "reference's own error",
+        }))
+        .filter((floor) => floor.value !== null && floor.value > 0),
+    );
     return {
       x_label: "time (s)",
       y_label: axis.label,

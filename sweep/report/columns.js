@@ -132,7 +132,7 @@ const Columns = (() => {
     };
   }
 
-  const ratio_text = (ratio) => (ratio ? `${Format.number(ratio.mean)} ${Format.interval(ratio)}` : "–");
+  const ratio_text = (ratio) => (ratio ? `${Format.number(ratio.mean)} (${Format.number(ratio.low)} … ${Format.number(ratio.high)})` : "–");
 
   const half = (bounds) =>
     Number.isFinite(bounds?.low) && Number.isFinite(bounds?.high) ? (bounds.high - bounds.low) / 2 : null;

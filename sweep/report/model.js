@@ -20,6 +20,7 @@ const Model = (() => {
       ]),
     );
 
+    model.budgets_tell = budgets_tell(model.groups);
     model.cell = by_id(model.cells);
     for (const cell of model.cells) cell.name = name_of(model, cell);
     for (const group of model.groups) {
@@ -40,7 +41,14 @@ const Model = (() => {
     const backend = model.backends.length > 1 ? `, ${item.backend}` : "";
     const told = Object.entries(item.varied ?? {}).filter(([name]) => model.told_apart_by.get(item.method).has(name));
     const varied = Format.parameters(Object.fromEntries(told));
-    return `${method}${backend}${varied && ` · ${varied}`}`;
+    const budget = model.budgets_tell && item.budget;
+    return `${method}${backend}${varied && ` · ${varied}`}${budget ? ` · ${budget}` : ""}`;
+  }
+
+  /// Whether groups exist that differ in their budget alone.
+  function budgets_tell(groups) {
+    const rest = groups.map(({scene, method, backend, varied}) => JSON.stringify([scene, method, backend, varied]));
+    return new Set(rest).size < rest.length;
   }
 
   /// The parameters in which a method's groups and cells differ.
