@@ -1,6 +1,6 @@
 #pragma once
 /// What the tests of many-light methods share: scenes of one floor, lights made by hand, a turned and scaled
-/// copy of a scene with its lights.
+/// copy of a scene with its lights, a room that all of them agree on.
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -81,5 +81,25 @@ inline Image image_of(const Scene& scene, ManyLights& method, int size, uint64_t
   render(scene, method, film, {.passes = 1}, {.seed = seed, .threads = threads});
   return film.radiance();
 }
+
+/// A box with a blocker, seen so that no pixel lies within half a metre of a corner, where 1/d^2 has no
+/// finite variance.
+inline std::string room(const std::string& material, const std::string& lights) {
+  return R"({
+    "camera": {"position": [0, 1, 1.9], "look_at": [0, 0.9, -2], "vertical_fov": 24, "resolution": [4, 4]},
+    "materials": [{"name": "wall", )" +
+         material + R"(}, {"name": "grey", "type": "lambert", "albedo": 0.5}],
+    "objects": [{"name": "room", "type": "box", "low": [-1, 0, -2], "high": [1, 2, 2], "material": "wall"},
+                {"name": "blocker", "type": "box", "low": [-0.6, 0, -1], "high": [-0.2, 0.5, -0.6], "material": "grey"}],
+    "lights": [)" +
+         lights + "]}";
+}
+inline const char* const kDiffuse = R"("type": "lambert", "albedo": 0.6)";
+inline const char* const kGlossy = R"("type": "coated", "albedo": 0.4, "roughness": 0.7)";
+inline const char* const kSphere =
+    R"({"type": "sphere", "center": [0.3, 1.5, 0], "radius": 0.1, "radiance": 50})";
+inline const char* const kSpot =
+    R"({"type": "spot", "position": [0.3, 1.2, 1], "look_at": [0.9, 0.4, 0], "intensity": 9, "inner": 25, "outer": 40})";
+inline const char* const kPoint = R"({"type": "point", "position": [0.3, 1.5, 0], "intensity": 2})";
 
 }  // namespace zonal::test
