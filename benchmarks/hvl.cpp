@@ -112,15 +112,15 @@ void vpl_lights(const Points& p, const Lights& l, float* sums) {
   }
 }
 
-/// Baseline, lanes are points: what each light sends, as `gather` writes it.
-void vpl_points(const Points& p, const Lights& l, int first, int count, const hvl::Out& out) {
+/// Baseline, lanes are points: adds what each light sends.
+void vpl_points(const Points& p, const Lights& l, int first, int count, const hvl::Sums& sums) {
   const auto root = [](float v) { return std::sqrt(v); };
   for (int i = 0; i < count; ++i) {
     const int j = first + i;
     const float lx = l.x[j], ly = l.y[j], lz = l.z[j], mx = l.nx[j], my = l.ny[j], mz = l.nz[j];
     const float ix = l.ix[j], iy = l.iy[j], iz = l.iz[j], n_i = l.n_i[j], stretch_i = l.stretch_i[j];
     const float lr = l.r[j], lg = l.g[j], lb = l.b[j];
-    float *r = out.r + i * kPoints, *g = out.g + i * kPoints, *b = out.b + i * kPoints;
+    float *r = sums.r, *g = sums.g, *b = sums.b;
 #pragma omp simd
     for (int k = 0; k < kPoints; ++k) {
       const float dx = lx - p.x[k], dy = ly - p.y[k], dz = lz - p.z[k], d2 = dx * dx + dy * dy + dz * dz;
@@ -131,9 +131,9 @@ void vpl_points(const Points& p, const Lights& l, int first, int count, const hv
       ggx<float>(p.n_o[k], p.stretch_o[k], std::max(up, 1e-4f), p.ox[k] * wx + p.oy[k] * wy + p.oz[k] * wz,
                  root, received);
       const float geometry = std::max(up, 0.0f) * std::max(facing, 0.0f) * inverse * inverse;
-      r[k] = lr * sent[0] * received[0] * geometry;
-      g[k] = lg * sent[1] * received[1] * geometry;
-      b[k] = lb * sent[2] * received[2] * geometry;
+      r[k] += lr * sent[0] * received[0] * geometry;
+      g[k] += lg * sent[1] * received[1] * geometry;
+      b[k] += lb * sent[2] * received[2] * geometry;
     }
   }
 }
@@ -243,21 +243,13 @@ struct EmitSh {
 
 void run() {
   static const Scene s = make_scene();
-  alignas(64) static float r[kBlock * kPoints], g[kBlock * kPoints], b[kBlock * kPoints];
-  const hvl::Out out{r, g, b};
-  alignas(64) static std::array<float, kPoints> sums[3];
-  // Blocks as in ManyLights: contributions, then their sum.
+  alignas(64) static std::array<float, kPoints> r, g, b;
+  const hvl::Sums sums{r.data(), g.data(), b.data()};
+  // In blocks, as ManyLights has them where nothing occludes.
   const auto blocks = [&](auto&& gather) {
-    for (auto& c : sums) c.fill(0);
-    for (int first = 0; first < kLights; first += kBlock) {
-      gather(first);
-      for (int j = 0; j < kBlock; ++j)
-        for (int k = 0; k < kPoints; ++k) {
-          const int i = j * kPoints + k;
-          sums[0][size_t(k)] += r[i], sums[1][size_t(k)] += g[i], sums[2][size_t(k)] += b[i];
-        }
-    }
-    keep(sums);
+    r.fill(0), g.fill(0), b.fill(0);
+    for (int first = 0; first < kLights; first += kBlock) gather(first);
+    keep(&r), keep(&g), keep(&b);
   };
 
   std::vector<Row> rows;
@@ -267,7 +259,7 @@ void run() {
                     keep(result);
                   }});
   rows.push_back({"vpl, lanes are points",
-                  [&] { blocks([&](int first) { vpl_points(s.points, s.lights, first, kBlock, out); }); }});
+                  [&] { blocks([&](int first) { vpl_points(s.points, s.lights, first, kBlock, sums); }); }});
   const auto add = [&](const std::string& name, hvl::Product product, int bands, bool mirrored,
                        bool ggx_emission, float soft) {
     const auto points = std::make_shared<hvl::Receivers>(receivers(s, product, bands, mirrored));
@@ -275,9 +267,9 @@ void run() {
         {name, [&, points, ggx_emission, soft] {
            blocks([&](int first) {
              if (ggx_emission)
-               hvl::gather(*points, &s.records[size_t(first)], kBlock, soft, EmitGgx{s.lights, first}, out);
+               hvl::gather(*points, &s.records[size_t(first)], kBlock, soft, EmitGgx{s.lights, first}, sums);
              else
-               hvl::gather(*points, &s.records[size_t(first)], kBlock, soft, EmitSh{s, first}, out);
+               hvl::gather(*points, &s.records[size_t(first)], kBlock, soft, EmitSh{s, first}, sums);
            });
          }});
   };

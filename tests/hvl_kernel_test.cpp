@@ -71,7 +71,7 @@ vec3 gathered(const hvl::Receivers& receivers, vec3 to_light, float radius, floa
   const auto emit = [](int, const hvl::V& x, const hvl::V&, const hvl::V&, hvl::V* out) {
     for (int c = 0; c < 3; ++c) out[c] = x * 0.0f + 1.0f;
   };
-  hvl::gather(receivers, &light, 1, soft, emit, {r.data(), g.data(), b.data()});
+  hvl::gather(receivers, &light, 1, soft, emit, hvl::Out{r.data(), g.data(), b.data()});
   return {r[3], g[3], b[3]};
 }
 hvl::Receivers receivers_facing_up(hvl::Product product, int bands, bool mirrored) {

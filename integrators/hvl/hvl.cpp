@@ -12,7 +12,7 @@
 namespace zonal {
 
 void HvlParams::visit(ParamVisitor& v) {
-  ManyLightsParams::visit(v, 3);
+  ManyLightsParams::visit(v, {.occlusions = 3});
   v.choice("product", product, {"sh", "zonal"},
            "sh: any material by its table; zonal: a diffuse part and one symmetric lobe");
   v.integer_or_auto("bands", bands, {1, hvl::kMaxBands}, "bands",
@@ -39,15 +39,21 @@ struct HvlTile : TileState {
 struct EmitBrdf {
   const LightArrays& lights;
   const BsdfArrays& brdfs;
+  const std::vector<HvlIntegrator::Brdf>& of;
   int first;
 
   void operator()(int i, const hvl::V& x, const hvl::V& y, const hvl::V& z, hvl::V* out) const {
     const int j = first + i;
+    if (of[j].at < 0) {
+      const hvl::V up = -(lights.nx[j] * x + lights.ny[j] * y + lights.nz[j] * z), zero = {};
+      for (int c = 0; c < 3; ++c) out[c] = up > 0.0f ? zero + of[j].flat[c] : zero;
+      return;
+    }
     alignas(64) float w[3][hvl::kLanes], f[3][hvl::kLanes];
     hvl::store(w[0], -(lights.tx[j] * x + lights.ty[j] * y + lights.tz[j] * z));
     hvl::store(w[1], -(lights.bx[j] * x + lights.by[j] * y + lights.bz[j] * z));
     hvl::store(w[2], -(lights.nx[j] * x + lights.ny[j] * y + lights.nz[j] * z));
-    brdfs.evaluate_one(j, hvl::kLanes, w[0], w[1], w[2], f[0], f[1], f[2]);
+    brdfs.evaluate_one(of[j].at, hvl::kLanes, w[0], w[1], w[2], f[0], f[1], f[2]);
     for (int c = 0; c < 3; ++c) hvl::load(f[c], out[c]);
   }
 };
@@ -129,7 +135,8 @@ void HvlIntegrator::prepare_emission(const VirtualLightSet& set, const Stop& sto
     const ViewFrame view(w_in);
     float* out = emission_.data() + size_t(j) * stored * 3;
     emitters_[j] = {view.c * light.frame.x + view.s * light.frame.y,
-                    view.c * light.frame.y - view.s * light.frame.x, light.frame.z, out};
+                    view.c * light.frame.y - view.s * light.frame.x, light.frame.z, out,
+                    light.bsdf.kind == BsdfKind::lambert};
     const bool mirrored = materials_.mirrored(light.material);
     const int stride = sh_count(bands[j], mirrored);
     std::vector<float> F(size_t(stride) * 3);
@@ -175,8 +182,19 @@ void HvlIntegrator::prepare(const Pass& pass, const VirtualLightSet& set, LightA
     prepare_emission(set, stop);
     return;
   }
-  brdfs_ = BsdfArrays(count);
-  for (int j = 0; j < count; ++j) brdfs_.set(j, arrays.bsdf[j], arrays.view[j]);
+  // Matt lights are one number.
+  int glossy = 0;
+  brdf_of_.assign(set.lights.size(), {});
+  for (int j = 0; j < count; ++j) {
+    const Bsdf& b = arrays.bsdf[j];
+    if (b.kind == BsdfKind::lambert)
+      brdf_of_[j].flat = b.diffuse * kInvPi;
+    else
+      brdf_of_[j].at = glossy++;
+  }
+  brdfs_ = BsdfArrays(glossy);
+  for (int j = 0; j < count; ++j)
+    if (brdf_of_[j].at >= 0) brdfs_.set(brdf_of_[j].at, arrays.bsdf[j], arrays.view[j]);
   brdfs_.finish();
 }
 
@@ -185,17 +203,26 @@ void HvlIntegrator::receive_sh(const TilePoints& points, hvl::Receivers& r) cons
   std::array<uint32_t, kTilePixels> material;
   for (int g = 0; g * hvl::kLanes < points.count; ++g) {
     const int end = std::min(points.count, (g + 1) * hvl::kLanes);
-    int most = 1;
+    const bool automatic = params_.bands == kAuto;
+    const auto is_matt = [&](int k) { return points.bsdf(k).kind == BsdfKind::lambert; };
+    int most = 1, matt = 0;
     bool mirrored = true;
     for (int k = g * hvl::kLanes; k < end; ++k) {
       const vec3 w_out(points.ox[k], points.oy[k], points.oz[k]);
       material[k] = points.surface(k).material;
-      bands[k] = params_.bands != kAuto
-                     ? params_.bands
-                     : materials_.bands(material[k], points.bsdf(k), ShTable::brdf_cosine, w_out);
+      if (automatic && is_matt(k)) ++matt;
+      bands[k] = !automatic ? params_.bands
+                            : materials_.bands(material[k], points.bsdf(k), ShTable::brdf_cosine, w_out);
       bands[k] = std::clamp(bands[k], 1, hvl::kMaxBands);
       most = std::max(most, bands[k]);
       mirrored = mirrored && materials_.mirrored(material[k]);
+    }
+    if (matt == end - g * hvl::kLanes) {
+      // All their bands, in closed form.
+      r.open_matt(g);
+      for (int k = g * hvl::kLanes; k < end; ++k)
+        for (int c = 0; c < 3; ++c) r.diffuse[c][k] = points.bsdf(k).diffuse[c] * kInvPi;
+      continue;
     }
     r.open(g, most, mirrored);
     std::vector<float> table(3 * size_t(sh_count(most, false)));
@@ -203,6 +230,7 @@ void HvlIntegrator::receive_sh(const TilePoints& points, hvl::Receivers& r) cons
     int weighted = 0;
     for (int k = g * hvl::kLanes; k < end; ++k) {
       const vec3 w_out(points.ox[k], points.oy[k], points.oz[k]);
+      if (automatic && is_matt(k)) bands[k] = most;  // they cost the same as its neighbours'
       const bool half = materials_.mirrored(material[k]);
       const int stride = sh_count(bands[k], half);
       materials_.look_up(material[k], points.bsdf(k), ShTable::brdf_cosine, w_out, bands[k], stride,
@@ -224,9 +252,15 @@ void HvlIntegrator::receive_zonal(const TilePoints& points, hvl::Receivers& r) c
   const int bands = params_.bands == kAuto ? 20 : params_.bands;
   std::array<float, hvl::kMaxBands> weights;
   window(bands, weights.data());
-  for (int g = 0; g * hvl::kLanes < points.count; ++g) r.open(g, bands, true);
+  for (int g = 0; g * hvl::kLanes < points.count; ++g) r.open_matt(g);
   for (int k = 0; k < points.count; ++k) {
+    if (points.bsdf(k).kind == BsdfKind::lambert) {
+      for (int c = 0; c < 3; ++c) r.diffuse[c][k] = points.bsdf(k).diffuse[c] * kInvPi;
+      continue;
+    }
     const ZonalBrdf z = zonal_brdf(points.bsdf(k), points.view[k], bands);
+    const int group = k / hvl::kLanes;
+    if (!r.groups[group].lobe) r.open(group, bands, true), r.groups[group].lobe = true;
     r.set_zonal(k, bands, z.lobe.data(), weights.data());
     r.ax[k] = points.tx[k] * z.axis.x + points.bx[k] * z.axis.y + points.nx[k] * z.axis.z;
     r.ay[k] = points.ty[k] * z.axis.x + points.by[k] * z.axis.y + points.ny[k] * z.axis.z;
@@ -260,7 +294,7 @@ std::unique_ptr<TileState> HvlIntegrator::prepare_tile(const TilePoints& points)
 /// Calls f with the function that `hvl::gather` emits by, for lights from `first` on.
 template <class F>
 void HvlIntegrator::with_emission(int first, F&& f) const {
-  if (params_.emission == HvlParams::Emission::brdf) return f(EmitBrdf{lights(), brdfs_, first});
+  if (params_.emission == HvlParams::Emission::brdf) return f(EmitBrdf{lights(), brdfs_, brdf_of_, first});
   const Emitter* emitters = emitters_.data() + first;
   const auto by_sh = [&](auto bands, auto mirrored) {
     f([emitters, count = emission_bands_](int j, const hvl::V& x, const hvl::V& y, const hvl::V& z,
@@ -268,6 +302,10 @@ void HvlIntegrator::with_emission(int first, F&& f) const {
       constexpr int kBands = decltype(bands)::value;
       const Emitter& e = emitters[j];
       const hvl::V up = -(e.z.x * x + e.z.y * y + e.z.z * z), zero = {};
+      if (e.flat) {
+        for (int c = 0; c < 3; ++c) sent[c] = up > 0.0f ? zero + e.coefficients[c] : zero;
+        return;
+      }
       hvl::emission<kBands, decltype(mirrored)::value>(hvl::Bands::table(), count, e.coefficients,
                                                        -(e.x.x * x + e.x.y * y + e.x.z * z),
                                                        -(e.y.x * x + e.y.y * y + e.y.z * z), up, sent);
@@ -297,6 +335,14 @@ void HvlIntegrator::gather(const TilePoints& points, int first, int count, Contr
   const hvl::Receivers& r = static_cast<const HvlTile*>(points.state)->receivers;
   const hvl::Out to{out.r.data(), out.g.data(), out.b.data()};
   out.order = Contributions::Order::by_light;
+  with_emission(first, [&](const auto& emit) {
+    hvl::gather(r, records_.data() + first, count, params_.soft_edge, emit, to);
+  });
+}
+
+void HvlIntegrator::gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const {
+  const hvl::Receivers& r = static_cast<const HvlTile*>(points.state)->receivers;
+  const hvl::Sums to{sums.r.data(), sums.g.data(), sums.b.data()};
   with_emission(first, [&](const auto& emit) {
     hvl::gather(r, records_.data() + first, count, params_.soft_edge, emit, to);
   });

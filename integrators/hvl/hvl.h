@@ -37,6 +37,11 @@ class HvlIntegrator : public ManyLights {
   void load(const Scene&, const Stop&, PassStats&) override;
   /// Position, radius and power of every light of the pass.
   const std::vector<hvl::Light>& records() const { return records_; }
+  /// A light's BRDF: one number, 1/sr, or a place among those that depend on the direction.
+  struct Brdf {
+    int at = -1;
+    vec3 flat{0};
+  };
   /// What light `j` reflects of a unit flux towards w (unit, world), 1/sr: (HVL-2), or the BRDF.
   vec3 emission(int j, vec3 w) const;
 
@@ -44,12 +49,15 @@ class HvlIntegrator : public ManyLights {
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
+  void gather_sums(const TilePoints&, int first, int count, PointSums&) const override;
+  bool horizons_hide() const override { return true; }
 
  private:
   /// A light's emission on spherical harmonics: view frame in world, coefficients for hvl::emission.
   struct Emitter {
     vec3 x, y, z;
     const float* coefficients;
+    bool flat;  ///< Lambert: the first coefficient says all
   };
   void refuse_lobeless(const Scene&) const;
   void prepare_emission(const VirtualLightSet&, const Stop&);
@@ -65,7 +73,8 @@ class HvlIntegrator : public ManyLights {
   const Scene* loaded_ = nullptr;
   ShMaterials materials_;
   std::vector<hvl::Light> records_;
-  BsdfArrays brdfs_;  ///< emission brdf: of the lights
+  BsdfArrays brdfs_;           ///< emission brdf: of the lights that are not matt
+  std::vector<Brdf> brdf_of_;  ///< emission brdf: of every light
   std::vector<Emitter> emitters_;
   std::vector<float> emission_;
   int emission_bands_ = 1;

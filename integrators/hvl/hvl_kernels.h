@@ -1,9 +1,9 @@
 #pragma once
 /// Gathering by lanes: a tile's points against a block of harmonic virtual lights, some points at a time.
 ///
-///     Receivers receivers;                                  // positions, normals; then add_sh or add_zonal
-///     a point gather(receivers, lights, count, soft, emit, out);    // out.r[64 j + k]: light j by way of
-///     point k
+///     Receivers receivers;                                          // positions, normals; then set_sh, ...
+///     gather(receivers, lights, count, soft, emit, Out{r, g, b});   // r[64 j + k]: light j, point k
+///     gather(receivers, lights, count, soft, emit, Sums{r, g, b});  // r[k]: plus all of the lights
 ///
 /// `emit(j, x, y, z, out)` gives what light j's surface reflects of a unit flux along (x, y, z), the world
 /// directions from the points to the light: 1/sr, three channels.
@@ -39,8 +39,10 @@ struct Receivers {
   Product product = Product::sh;
 
   struct Group {
-    int bands = 0;              ///< 0: nothing is received
+    int bands = 0;  ///< 0: nothing is received
+    Product product = Product::sh;
     bool mirrored = true;       ///< product sh: no coefficient with m < 0 in any lane
+    bool lobe = true;           ///< product zonal: some lane has a specular part
     std::vector<float> values;  ///< as `product` and `zonal_product` read them
   };
   std::array<Group, kGroups> groups;
@@ -48,9 +50,14 @@ struct Receivers {
   /// Makes room: zeros in all lanes.
   void open(int group, int bands, bool mirrored) {
     Group& g = groups[group];
-    g.bands = bands, g.mirrored = mirrored;
+    g.bands = bands, g.mirrored = mirrored, g.product = product, g.lobe = true;
     const int count = product == Product::zonal ? bands : 3 * sh_count(bands, mirrored);
     g.values.assign(size_t(count) * kLanes, 0.0f);
+  }
+  /// A group of matt points: (HVL-6) alone, by `diffuse`.
+  void open_matt(int group) {
+    Group& g = groups[group];
+    g.bands = 1, g.product = Product::zonal, g.lobe = false;
   }
   /// Point k's coefficients of F', channel c's at table[c * stride + i] as in materials/sh_material.h, each
   /// band times window[l].
@@ -59,15 +66,46 @@ struct Receivers {
   void set_zonal(int k, int bands, const float* lobe, const float* window);
 };
 
-/// Where `gather` writes: entry [kPoints * j + k].
+/// Where `gather` writes: entry [kPoints * j + k] of light j and point k.
 struct Out {
   float *r, *g, *b;
+
+  struct Group {
+    float *r, *g, *b;
+    ZONAL_HVL_INLINE void put(int j, const V* received) const {
+      store(r + j * kPoints, received[0]), store(g + j * kPoints, received[1]);
+      store(b + j * kPoints, received[2]);
+    }
+    static constexpr bool kKeepsZeros = true;
+    void close() const {}
+  };
+  Group group(int at) const { return {r + at, g + at, b + at}; }
+};
+
+/// Or adds: entry [k] of point k.
+struct Sums {
+  float *r, *g, *b;
+
+  struct Group {
+    float *r, *g, *b;
+    V sum[3];
+    ZONAL_HVL_INLINE void put(int, const V* received) {
+      for (int c = 0; c < 3; ++c) sum[c] += received[c];
+    }
+    static constexpr bool kKeepsZeros = false;
+    void close() const { store(r, sum[0]), store(g, sum[1]), store(b, sum[2]); }
+  };
+  Group group(int at) const {
+    Group open{r + at, g + at, b + at, {}};
+    load(open.r, open.sum[0]), load(open.g, open.sum[1]), load(open.b, open.sum[2]);
+    return open;
+  }
 };
 
 /// The lanes of one group against all lights. kBands = 0: any number of bands.
-template <Product kProduct, int kBands, bool kMirrored, class Emit>
+template <Product kProduct, int kBands, bool kMirrored, class Emit, class Sink>
 void gather_group(const Receivers& receivers, int group, const Light* lights, int count, float soft,
-                  const Emit& emit, const Out& out) {
+                  const Emit& emit, const Sink& out) {
   const Bands& table = Bands::table();
   const int at = group * kLanes;
   const Receivers::Group& g = receivers.groups[group];
@@ -78,6 +116,7 @@ void gather_group(const Receivers& receivers, int group, const Light* lights, in
   load(&receivers.ax[at], ax), load(&receivers.ay[at], ay), load(&receivers.az[at], az);
   load(&receivers.bx[at], bx), load(&receivers.by[at], by), load(&receivers.bz[at], bz);
   const V zero = {};
+  auto sink = out.group(at);
 
   for (int j = 0; j < count; ++j) {
     const Light& light = lights[j];
@@ -88,30 +127,33 @@ void gather_group(const Receivers& receivers, int group, const Light* lights, in
     // What lies wholly below either horizon sends nothing, whatever rings there.
     const Mask reached = (s.emitted > 0.0f) & (up > -s.sine) & (over > -s.sine);
     V received[3] = {zero, zero, zero};
-    if (any(reached)) {
-      V sent[3];
-      emit(j, s.x, s.y, s.z, sent);
-      if constexpr (kProduct == Product::sh) {
-        const V x = ax * s.x + ay * s.y + az * s.z, y = bx * s.x + by * s.y + bz * s.z;
-        V gain[kBands > 0 ? kBands : kMaxBands];
-        cap_gains<kBands>(table, g.bands, s.sine, s.cosine, soft, gain);
-        product<kBands, kMirrored>(table, g.bands, g.values.data(), x, y, up, gain, received);
-      } else {
-        V E, k, turn = ax * s.x + ay * s.y + az * s.z;
-        cap_irradiance(up, s, E);
+    if (!any(reached)) {
+      if (Sink::Group::kKeepsZeros) sink.put(j, received);
+      continue;
+    }
+    V sent[3];
+    emit(j, s.x, s.y, s.z, sent);
+    if constexpr (kProduct == Product::sh) {
+      const V x = ax * s.x + ay * s.y + az * s.z, y = bx * s.x + by * s.y + bz * s.z;
+      V gain[kBands > 0 ? kBands : kMaxBands];
+      cap_gains<kBands>(table, g.bands, s.sine, s.cosine, soft, gain);
+      product<kBands, kMirrored>(table, g.bands, g.values.data(), x, y, up, gain, received);
+    } else {
+      V E, k;
+      cap_irradiance(up, s, E);
+      for (int c = 0; c < 3; ++c) load(&receivers.diffuse[c][at], k), received[c] = k * E;
+      if (g.lobe) {
+        const V turn = ax * s.x + ay * s.y + az * s.z;
         const V lobe = zonal_product<kBands>(table, g.bands, g.values.data(), turn, s.sine, s.cosine, soft) *
                        larger(up, zero);
-        for (int c = 0; c < 3; ++c) {
-          load(&receivers.specular[c][at], k), received[c] = k * lobe;
-          load(&receivers.diffuse[c][at], k), received[c] = k * E + received[c];
-        }
+        for (int c = 0; c < 3; ++c) load(&receivers.specular[c][at], k), received[c] = k * lobe + received[c];
       }
-      const V scale = reached ? s.emitted : zero;
-      for (int c = 0; c < 3; ++c) received[c] *= sent[c] * (scale * (light.power[c] * kInvPi));
     }
-    const int to = j * kPoints + at;
-    store(out.r + to, received[0]), store(out.g + to, received[1]), store(out.b + to, received[2]);
+    const V scale = reached ? s.emitted : zero;
+    for (int c = 0; c < 3; ++c) received[c] *= sent[c] * (scale * (light.power[c] * kInvPi));
+    sink.put(j, received);
   }
+  sink.close();
 }
 
 /// Calls f with the number of bands as a constant where there is a kernel for it, with 0 elsewhere.
@@ -132,13 +174,13 @@ void with_bands(int bands, F&& f) {
 }
 
 /// All points of the tile against `count` lights.
-template <class Emit>
+template <class Emit, class Sink>
 void gather(const Receivers& receivers, const Light* lights, int count, float soft, const Emit& emit,
-            const Out& out) {
+            const Sink& out) {
   for (int group = 0; group < kGroups; ++group) {
     const Receivers::Group& g = receivers.groups[group];
     if (g.bands == 0) continue;
-    if (receivers.product == Product::zonal) {
+    if (g.product == Product::zonal) {
       gather_group<Product::zonal, 0, true>(receivers, group, lights, count, soft, emit, out);
     } else if (!g.mirrored) {
       gather_group<Product::sh, 0, false>(receivers, group, lights, count, soft, emit, out);
