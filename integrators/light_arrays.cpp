@@ -1,5 +1,7 @@
 #include "integrators/light_arrays.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace zonal {
@@ -11,7 +13,7 @@ LightArrays::LightArrays(const VirtualLightSet& set, int block) : count(static_c
     a->resize(size);
   target.resize(size), view.resize(size), bsdf.resize(size);
 
-  for (size_t j = 0; j < size; ++j) {
+  tbb::parallel_for(size_t{0}, size, [&](size_t j) {
     const VirtualLight& v = set.lights[std::min(j, set.lights.size() - 1)];
     const bool padding = j >= set.lights.size();
     x[j] = v.position.x, y[j] = v.position.y, z[j] = v.position.z;
@@ -26,7 +28,7 @@ LightArrays::LightArrays(const VirtualLightSet& set, int block) : count(static_c
     target[j] = v.shadow_point;
     view[j] = prepare(v.bsdf, in, PathEnd::light);
     bsdf[j] = v.bsdf;
-  }
+  });
 }
 
 }  // namespace zonal

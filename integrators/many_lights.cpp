@@ -1,13 +1,14 @@
 #include "integrators/many_lights.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/render.h"
 #include "integrators/direct.h"
 
 namespace zonal {
 
-void ManyLightsParams::visit(ParamVisitor& v, int occlusions, bool skips) {
+void ManyLightsParams::visit(ParamVisitor& v, const Has& has) {
   v.integer("lights", lights, {1, 1e8}, "lights",
             "virtual lights stored in all, after all bounces, shared among primaries by power");
   v.integer("bounces", bounces, {1, 1000}, "bounces",
@@ -24,9 +25,14 @@ void ManyLightsParams::visit(ParamVisitor& v, int occlusions, bool skips) {
   v.integer("direct_samples", direct_samples, {1, 1e6}, "samples",
             "pairs of light and BRDF rays a pixel and pass");
   std::vector<std::string> names = {"none", "center", "sphere"};
-  names.resize(static_cast<size_t>(occlusions));
+  names.resize(static_cast<size_t>(has.occlusions));
   v.choice("occlusion", occlusion, names, "what blocks light on its way from a virtual light");
-  if (skips)
+  if (has.split)
+    v.number(
+        "split", split, {0, 1e6}, "widths",
+        "points nearer to a light than so many widths of its block gather the block's texels one by one; 0: "
+        "none");
+  if (has.skip)
     v.number(
         "skip", skip, {0, 1}, "",
         "a light that cannot bring a tile this share of what it has received before is left out; what that "
@@ -57,6 +63,7 @@ void ManyLights::trace_lights(const Pass& pass, int count, const Stop& stop, Pas
     set_ = *given_;
   } else {
     VirtualLightOptions options = tracing_options(shared_, pass, count);
+    options.keep_texels = shared_.split > 0;
     adjust(options);
     set_ = make_virtual_lights(pass.scene, options, stop);
   }
@@ -70,9 +77,26 @@ void ManyLights::trace_lights(const Pass& pass, int count, const Stop& stop, Pas
 
 /// Lays the present set out in arrays and lets the method prepare them.
 void ManyLights::take_lights(const Pass& pass, const Stop& stop, PassStats* stats) {
-  arrays_ = LightArrays(set_, kBlockLights);
   PassStats ignored;
-  prepare(pass, set_, arrays_, stop, stats ? *stats : ignored);
+  if (!stats) stats = &ignored;
+  parts_.clear();
+  if (!(shared_.split > 0) || set_.texels.empty()) {
+    arrays_ = LightArrays(set_, kBlockLights);
+    prepare(pass, set_, arrays_, stop, *stats);
+    return;
+  }
+  const auto whole = static_cast<int>(set_.lights.size());
+  for (const VirtualLight& v : set_.lights) {
+    const bool block = v.texel_count > 1 && v.footprint > 0;
+    parts_.push_back({block ? shared_.split * std::sqrt(v.footprint) : 0.0f,
+                      whole + static_cast<int>(v.first_texel), static_cast<int>(v.texel_count)});
+  }
+  set_.parts = set_.texels.size();
+  set_.lights.insert(set_.lights.end(), set_.texels.begin(), set_.texels.end());
+  set_.texels.clear();
+  arrays_ = LightArrays(set_, kBlockLights);
+  arrays_.count = whole;
+  prepare(pass, set_, arrays_, stop, *stats);
 }
 
 /// A timed render whose pass would take more than a tenth of the time gathers from fewer lights a pass, but
@@ -155,43 +179,50 @@ vec3 sphere_target(vec3 center, float radius, vec3 normal, vec3 target, const Su
 
 }  // namespace
 
-/// Zeroes what the lights' shadow rays find blocked, light by light in packets of 8 points.
-void ManyLights::remove_shadowed(const TilePoints& points, int first, int count, Contributions& c,
-                                 TileStats& stats) const {
+uint64_t ManyLights::visible(const TilePoints& points, int light, uint64_t wanted, int* rays) const {
+  if (shared_.occlusion == Occlusion::none) return wanted;
   const bool sphere = shared_.occlusion == Occlusion::sphere;
-  std::array<int, kTilePixels> lit;
+  const vec3 center = arrays_.target[light];
+  uint64_t seen = 0;
+  std::array<int, 8> packet;
   std::array<vec3, 8> origins, targets;
+  for (uint64_t left = wanted; left != 0;) {
+    int n = 0;
+    for (; n < 8 && left != 0; ++n, left &= left - 1) {
+      const int k = packet[n] = std::countr_zero(left);
+      const Surface& s = points.surface(k);
+      targets[n] = center;
+      if (sphere) {
+        // Over the lights each point walks along a low-discrepancy sequence (Roberts 2018, R2).
+        const auto number = static_cast<uint32_t>(light);
+        targets[n] = sphere_target(arrays_.position(light), arrays_.radius[light], arrays_.normal(light),
+                                   center, s, hash32(points.seed[k], 5) + number * 0xc13fa9a9u,
+                                   hash32(points.seed[k], 6) + number * 0x91e10da6u);
+      }
+      const vec3 to = targets[n] - s.position;
+      origins[n] = glm::dot(to, s.normal) > 0 ? points.above[k] : offset_origin(s, to);
+    }
+    *rays += n;
+    const uint32_t blocked = scene_->occluded8(origins.data(), (1u << n) - 1u, targets.data());
+    for (int m = 0; m < n; ++m)
+      if (!(blocked >> m & 1u)) seen |= uint64_t{1} << packet[m];
+  }
+  return seen;
+}
+
+/// Zeroes what the lights' shadow rays find blocked, light by light in packets of 8 points.
+void ManyLights::remove_shadowed(const TilePoints& points, int first, int count, Contributions& c) const {
   for (int j = 0; j < count; ++j) {
-    const int l = first + j;
-    int lit_count = 0;
+    uint64_t lit = 0;
     for (int k = 0; k < points.count; ++k) {
       const int i = c.at(j, k);
-      if (c.r[i] != 0 || c.g[i] != 0 || c.b[i] != 0) lit[lit_count++] = k;
+      lit |= uint64_t{c.r[i] != 0 || c.g[i] != 0 || c.b[i] != 0} << k;
     }
-    const vec3 target = arrays_.target[l];
-    for (int begin = 0; begin < lit_count; begin += 8) {
-      const int n = std::min(8, lit_count - begin);
-      for (int m = 0; m < n; ++m) {
-        const int k = lit[begin + m];
-        const Surface& s = points.surface(k);
-        targets[m] = target;
-        if (sphere) {
-          // Over the lights each point walks along a low-discrepancy sequence (Roberts 2018, R2).
-          const auto number = static_cast<uint32_t>(l);
-          targets[m] = sphere_target(arrays_.position(l), arrays_.radius[l], arrays_.normal(l), target, s,
-                                     hash32(points.seed[k], 5) + number * 0xc13fa9a9u,
-                                     hash32(points.seed[k], 6) + number * 0x91e10da6u);
-        }
-        origins[m] = offset_origin(s, targets[m] - s.position);
-      }
-      const uint32_t blocked = scene_->occluded8(origins.data(), (1u << n) - 1u, targets.data());
-      for (int m = 0; m < n; ++m) {
-        if (!(blocked >> m & 1u)) continue;
-        const int i = c.at(j, lit[begin + m]);
-        c.r[i] = c.g[i] = c.b[i] = 0;
-      }
+    uint64_t hidden = lit & ~visible(points, first + j, lit, &c.shadow_rays);
+    for (; hidden != 0; hidden &= hidden - 1) {
+      const int i = c.at(j, std::countr_zero(hidden));
+      c.r[i] = c.g[i] = c.b[i] = 0;
     }
-    stats.shadow_rays += lit_count;
   }
 }
 
@@ -254,9 +285,38 @@ void ManyLights::gather_run(const TilePoints& points, int first, int count, Poin
   if (shared_.occlusion == Occlusion::none && !accounts()) return gather_sums(points, first, count, sums);
   Contributions c;
   gather(points, first, count, c);
-  if (shared_.occlusion != Occlusion::none) remove_shadowed(points, first, count, c, stats);
+  if (shared_.occlusion != Occlusion::none && !gather_traces()) remove_shadowed(points, first, count, c);
+  stats.shadow_rays += c.shadow_rays;
   if (accounts()) account(points, first, count, c, stats);
   add(points, count, c, sums);
+}
+
+/// Whether a point of the tile is nearer to the light than its texels reach.
+bool ManyLights::is_near(const TilePoints& points, const TileBounds& bounds, int light) const {
+  const float reach = parts_[light].reach;
+  const vec3 p = arrays_.position(light);
+  const vec3 off = p - bounds.center;
+  if (!(glm::dot(off, off) < sqr(reach + bounds.radius))) return false;
+  float near = 0;
+#pragma omp simd reduction(+ : near)
+  for (int k = 0; k < points.padded; ++k) {
+    const float d2 = sqr(p.x - points.x[k]) + sqr(p.y - points.y[k]) + sqr(p.z - points.z[k]);
+    near += d2 < sqr(reach) ? 1.0f : 0.0f;
+  }
+  return near > 0;
+}
+
+/// Gathers the texels of those lights of a block that are near, and has their lights left out.
+void ManyLights::gather_near(const TilePoints& points, const TileBounds& bounds, int first, int count,
+                             uint8_t* wanted, PointSums& sums, TileStats& stats) const {
+  if (parts_.empty()) return;
+  for (int j = 0; j < count; ++j) {
+    if (!wanted[j] || !is_near(points, bounds, first + j)) continue;
+    wanted[j] = 0;
+    const Parts& parts = parts_[first + j];
+    for (int from = 0; from < parts.count; from += kBlockLights)
+      gather_run(points, parts.first + from, std::min(kBlockLights, parts.count - from), sums, stats);
+  }
 }
 
 void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, const Stop& stop,
@@ -281,6 +341,7 @@ void ManyLights::shade(const Tile& tile, vec3* radiance, Sampler* samplers, cons
     std::array<uint8_t, kBlockLights> wanted;
     stats.skipped_pairs += static_cast<uint64_t>(points.count) *
                            choose_lights(points, bounds, first, count, sums, &lost, wanted.data());
+    gather_near(points, bounds, first, count, wanted.data(), sums, stats);
     // Neighbours that are wanted go together.
     for (int begin = 0; begin < count;) {
       if (!wanted[begin]) {

@@ -46,11 +46,16 @@ struct ManyLightsParams {
   Direct direct = Direct::sampled;
   int direct_samples = 1;
   Occlusion occlusion = Occlusion::center;
-  float skip = 0;  ///< share of a tile's light
+  float skip = 0;   ///< share of a tile's light
+  float split = 0;  ///< widths of a light's block
 
-  /// `occlusions`: how many of the names none, center, sphere the method has. `skips`: it bounds what a light
-  /// brings (ManyLights::most), so that it has the parameter `skip`.
-  void visit(ParamVisitor& v, int occlusions, bool skips = false);
+  /// What parameters a method has beyond those of all.
+  struct Has {
+    int occlusions = 2;  ///< how many of the names none, center, sphere
+    bool skip = false;   ///< it bounds what a light brings (ManyLights::most)
+    bool split = true;   ///< a texel of a light's block is a light for it
+  };
+  void visit(ParamVisitor& v, const Has& has);
 };
 
 /// Lights handled together: their contributions to a tile's points stay in the cache.
@@ -62,6 +67,7 @@ inline constexpr int kBlockLights = 32;
 struct Contributions {
   enum class Order { by_light, by_point };
   Order order = Order::by_light;
+  int shadow_rays = 0;  ///< that `gather` traced itself
   alignas(64) std::array<float, kBlockLights * kTilePixels> r, g, b;
 
   /// Place of light `j` of the block (0 based) and point `k`.
@@ -82,12 +88,14 @@ class ManyLights : public Integrator {
   /// From now on every pass gathers from these lights instead of tracing its own: for tests, and for showing
   /// one method the lights of another.
   void gather_from(VirtualLightSet set) { given_ = std::make_shared<VirtualLightSet>(std::move(set)); }
-  /// The lights of the current pass: what a GPU twin gathers from.
+  /// The lights of the current pass: what a GPU twin gathers from. With `split` they end with the texels
+  /// (VirtualLightSet::parts).
   const VirtualLightSet& light_set() const { return set_; }
 
  protected:
   /// Called when a pass has its lights, before any `gather`: radii, coefficients, whatever a light keeps. May
   /// run in parallel inside. `set.lights[i]` is element i of `arrays`, where the method may set the radii.
+  /// With `split` the set ends with texels (VirtualLightSet::parts), which are gathered like any light.
   virtual void prepare(const Pass&, const VirtualLightSet& set, LightArrays& arrays, const Stop&,
                        PassStats&) {
     (void)set, (void)arrays;
@@ -106,6 +114,9 @@ class ManyLights : public Integrator {
   /// The same, summed over the lights into `sums` (added to what is there), where nothing occludes. Override
   /// it where a method sums faster than by way of the block.
   virtual void gather_sums(const TilePoints& points, int first, int count, PointSums& sums) const;
+  /// Whether `gather` leaves out what shadow rays find blocked, by asking `visible`: worth it where
+  /// evaluating costs more than the rays.
+  virtual bool gather_traces() const { return false; }
   /// Whether lights behind a tile's points, and points behind a light, bring exactly nothing: they are then
   /// left out before `gather`, with what their `radius` reaches around.
   virtual bool horizons_hide() const { return false; }
@@ -123,6 +134,10 @@ class ManyLights : public Integrator {
   /// Whether `account` wants to be called.
   virtual bool accounts() const { return false; }
 
+  /// Of the points whose bits are set in `wanted` those that a shadow ray to the light finds unblocked; all
+  /// of them where nothing occludes. Counts the rays in `rays`.
+  uint64_t visible(const TilePoints&, int light, uint64_t wanted, int* rays) const;
+
   const LightArrays& lights() const { return arrays_; }
   const Scene& scene() const { return *scene_; }
   const ManyLightsParams& shared() const { return shared_; }
@@ -136,17 +151,26 @@ class ManyLights : public Integrator {
   int lights_that_fit(const Pass&, const Stop&);
   double seconds_a_pass(const Pass&, const Stop&) const;
   void shade_direct(const Tile&, vec3* radiance, Sampler*, TileStats&) const;
+  bool is_near(const TilePoints&, const TileBounds&, int light) const;
   int choose_lights(const TilePoints&, const TileBounds&, int first, int count, const PointSums&,
                     double* lost, uint8_t* wanted) const;
   void gather_run(const TilePoints&, int first, int count, PointSums&, TileStats&) const;
-  void remove_shadowed(const TilePoints&, int first, int count, Contributions&, TileStats&) const;
+  void gather_near(const TilePoints&, const TileBounds&, int first, int count, uint8_t* wanted, PointSums&,
+                   TileStats&) const;
+  void remove_shadowed(const TilePoints&, int first, int count, Contributions&) const;
 
   ManyLightsParams shared_;
   const Scene* scene_ = nullptr;
   int pass_lights_ = 0;
   uint32_t pass_key_ = 0;
+  /// Texels of a light's block, as lights of their own in arrays_.
+  struct Parts {
+    float reach = 0;  ///< metres: nearer points gather them in the light's place
+    int first = 0, count = 0;
+  };
   VirtualLightSet set_;
   LightArrays arrays_;
+  std::vector<Parts> parts_;  ///< of every light; empty: nothing is split
   std::shared_ptr<const VirtualLightSet> given_;
 };
 

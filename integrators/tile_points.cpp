@@ -69,6 +69,7 @@ void TilePoints::add(int i, uint32_t random) {
   bx[k] = s.shading.y.x, by[k] = s.shading.y.y, bz[k] = s.shading.y.z;
   nx[k] = s.shading.z.x, ny[k] = s.shading.z.y, nz[k] = s.shading.z.z;
   ox[k] = out.x, oy[k] = out.y, oz[k] = out.z;
+  above[k] = offset_origin(s, s.normal);
   view[k] = prepare(tile.bsdfs[i], out);
 }
 

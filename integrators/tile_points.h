@@ -32,6 +32,7 @@ struct TilePoints {
   alignas(64) Floats gx, gy, gz;                          ///< geometric normal, unit, on the camera's side
   alignas(64) Floats tx, ty, tz, bx, by, bz, nx, ny, nz;  ///< shading frame's x, y and z (the normal), world
   alignas(64) Floats ox, oy, oz;                          ///< unit, towards the camera, shading frame: oz > 0
+  std::array<vec3, kTilePixels> above;                    ///< where rays to the normal's side start
   const TileState* state = nullptr;                       ///< of ManyLights::prepare_tile
   std::array<BsdfContext, kTilePixels> view;              ///< of the camera's direction, for `evaluate`
 

@@ -137,10 +137,23 @@ std::vector<float> nearest_distances(const std::vector<vec3>& points, int k) {
 
 std::vector<float> virtual_light_radii(const VirtualLightSet& set, const RadiusParams& params,
                                        float scene_radius) {
-  const size_t count = set.lights.size();
-  std::vector<float> radii(count, 0.0f);
+  const size_t count = set.lights.size() - set.parts;
+  std::vector<float> radii(set.lights.size(), 0.0f);
+  const auto finish = [&](float factor) {
+    // A texel's is its block's in the proportion of their widths.
+    for (size_t i = count; i < radii.size(); ++i) {
+      const VirtualLight& part = set.lights[i];
+      const uint32_t whole = set.grids[part.grid].at[part.cell];
+      radii[i] = radii[whole] * std::sqrt(part.footprint / set.lights[whole].footprint);
+    }
+    for (float& r : radii) {
+      r *= factor;
+      r = std::isfinite(r) ? std::clamp(r, kSmallest * scene_radius, scene_radius) : scene_radius;
+    }
+  };
   if (params.rule == RadiusRule::metres) {
-    std::fill(radii.begin(), radii.end(), std::fmax(params.metres, kSmallest * scene_radius));
+    std::fill(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(count), params.metres);
+    finish(1);
     return radii;
   }
 
@@ -160,7 +173,7 @@ std::vector<float> virtual_light_radii(const VirtualLightSet& set, const RadiusP
   // (RADIUS-2) for those the rule says nothing of.
   if (!all) {
     std::vector<vec3> positions;
-    for (const VirtualLight& v : set.lights) positions.push_back(v.position);
+    for (size_t i = 0; i < count; ++i) positions.push_back(set.lights[i].position);
     const int k = std::min(kNearest, static_cast<int>(count) - 1);
     const auto distances = k > 0 ? nearest_distances(positions, k) : std::vector<float>(count, 0.0f);
     for (size_t i = 0; i < count; ++i) {
@@ -169,10 +182,7 @@ std::vector<float> virtual_light_radii(const VirtualLightSet& set, const RadiusP
                        : 0.5f * set.lights[i].primary_distance;
     }
   }
-  for (float& r : radii) {
-    r *= params.factor;
-    r = std::isfinite(r) ? std::clamp(r, kSmallest * scene_radius, scene_radius) : scene_radius;
-  }
+  finish(params.factor);
   return radii;
 }
 

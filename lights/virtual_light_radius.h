@@ -46,7 +46,8 @@ struct RadiusParams {
 /// half the
 ///            distance to the nearest of them. Mézières 2022, Eq. 5.9, where e is a length without a scale: a
 ///            single neighbour at equal depth would take all the weight.
-/// A light without any other takes half its distance to the primary.
+/// A light without any other takes half its distance to the primary. Texels (VirtualLightSet::parts) have
+/// their block's radius in the proportion of the roots of their footprints.
 std::vector<float> virtual_light_radii(const VirtualLightSet& set, const RadiusParams& params,
                                        float scene_radius);
 

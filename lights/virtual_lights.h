@@ -89,6 +89,9 @@ struct VirtualLightSet {
   /// With `keep_texels`: the texels of each grid light's block that meet a reflecting surface, block by
   /// block. Their powers sum to the light's.
   std::vector<VirtualLight> texels;
+  /// So many of the lights at the end are not lights of their own but texels of the blocks of those before
+  /// them, for methods that gather either the one or the other.
+  size_t parts = 0;
   vec3 emitted_power{0};  ///< W, all primary lights together, whether or not it met a surface
 
   /// The lights in the eight cells around a light's own, row by row; kNone where there is none.

@@ -6,6 +6,7 @@
 
 #include "core/sampling.h"
 #include "integrators/bsdf_arrays.h"
+#include "integrators/hvl/hvl.h"
 #include "integrators/vpl/vpl.h"
 #include "integrators/vsl/vsl.h"
 #include "tests/support.h"
@@ -210,7 +211,7 @@ TEST(ManyLights, lights_without_a_surface_leave_a_black_image_and_one_warning) {
     "objects": [{"name": "o", "type": "quad", "corner": [-2, 0, 2], "edges": [[4, 0, 0], [0, 0, -4]], "material": "a"}],
     "lights": [{"type": "spot", "name": "torch", "position": [0, 1, 0], "look_at": [0, 2, 0], "intensity": 4}]})");
   for (const IntegratorRow& row : integrator_table()) {
-    if (row.name != "vpl" && row.name != "vsl") continue;
+    if (row.name != "vpl" && row.name != "vsl" && row.name != "hvl" && row.name != "vsgl") continue;
     const auto method = row.make(nlohmann::json::parse(R"({"direct": "none"})"), "", nullptr);
     Film film(8, 8);
     const RenderReport report = render(scene, *method, film, {.passes = 3}, {});
@@ -256,6 +257,15 @@ TEST(ManyLights, leaving_out_lights_behind_horizons_changes_no_bit) {
   Unhidden<VslIntegrator> all_vsl(vsl);
   VslIntegrator some_vsl(vsl);
   compare(all_vsl, some_vsl);
+  HvlParams hvl;
+  hvl.direct = ManyLightsParams::Direct::none, hvl.radius = vsl.radius;
+  hvl.product = HvlParams::Product::zonal, hvl.emission = HvlParams::Emission::brdf;
+  for (const Occlusion occlusion : {Occlusion::none, Occlusion::center}) {
+    hvl.occlusion = occlusion;
+    Unhidden<HvlIntegrator> all_hvl(hvl);
+    HvlIntegrator some_hvl(hvl);
+    compare(all_hvl, some_hvl);
+  }
 }
 
 TEST(ManyLights, skipping_loses_no_more_than_its_bound_says) {
@@ -288,6 +298,42 @@ TEST(ManyLights, skipping_loses_no_more_than_its_bound_says) {
     EXPECT_LE(some.skipped_bound, 0.5 * some.skipped_total) << method;
     EXPECT_NEAR(some.skipped_total, total - lost, 1e-4 * total) << method;
   }
+}
+
+/// A room corner lit by a spot: points lie beside the lights' surfaces.
+const char* kLitCorner = R"({"camera": {"position": [1, 1, 1], "look_at": [-1, 0.2, -1], "vertical_fov": 50},
+    "materials": [{"name": "a", "type": "metallic_roughness", "roughness": 0.7, "metallic": 0.2}],
+    "objects": [{"name": "room", "type": "box", "low": [-1, 0, -1], "high": [1.5, 2, 1.5], "material": "a"}],
+    "lights": [{"type": "spot", "position": [0.8, 1.5, 0.8], "look_at": [-1, 0.6, -0.5], "power": 30, "inner": 20, "outer": 35}]})";
+
+TEST(ManyLights, a_light_split_into_its_texels_is_those_texels) {
+  const Scene scene = test::scene_from(kLitCorner);
+  VplParams params;
+  params.direct = ManyLightsParams::Direct::none, params.occlusion = Occlusion::none;
+  params.clamp = 0.01f, params.lights = 50, params.block_texels = 7;
+  const auto image = [&](float split) {
+    params.split = split;
+    VplIntegrator method(params);
+    return test::image_of(scene, method, 24);
+  };
+  VplIntegrator texels(params);
+  VirtualLightSet set =
+      make_virtual_lights(scene, {.lights = 50, .seed = 0, .block_texels = 7, .keep_texels = true}, Stop{});
+  set.lights = std::move(set.texels);
+  for (VirtualLight& v : set.lights) v.texel_count = 0;
+  texels.gather_from(set);
+  const Image none = image(0), nobody = image(1e-6f), all = image(1e6f), near = image(2);
+  const Image truth = test::image_of(scene, texels, 24);
+  EXPECT_EQ(none.pixels, nobody.pixels);
+  EXPECT_EQ(all.pixels, truth.pixels);
+  // Near the lights a block is not its one light, far from them it is.
+  double before = 0, after = 0;
+  for (size_t i = 0; i < truth.pixels.size(); ++i) {
+    before += std::pow(none.pixels[i] - truth.pixels[i], 2.0);
+    after += std::pow(near.pixels[i] - truth.pixels[i], 2.0);
+  }
+  EXPECT_LT(after, 0.1 * before);
+  EXPECT_GT(after, 0);
 }
 
 TEST(ManyLights, no_direction_reflects_more_than_the_bound) {

@@ -36,6 +36,33 @@ TEST(virtual_light_radius, of_each_rule_is_about_the_diagonal_spacing_on_an_even
   EXPECT_NEAR(median(RadiusRule::density, 1.5f), 1.5 * 1.585 * spacing, 0.03 * spacing);
 }
 
+TEST(virtual_light_radius, of_a_texel_is_its_share_of_the_blocks) {
+  // A floor and a wall under an oblique spot: footprints of all sizes.
+  const Scene scene = scene_from(R"({"camera": {"position": [0, 1, 3], "look_at": [0, 0, 0]},
+    "materials": [{"name": "a", "type": "lambert"}],
+    "objects": [{"name": "o", "type": "quad", "corner": [-6, 0, 6], "edges": [[12, 0, 0], [0, 0, -12]], "material": "a"},
+                {"name": "w", "type": "quad", "corner": [-6, 0, -1], "edges": [[12, 0, 0], [0, 5, 0]], "material": "a"}],
+    "lights": [{"type": "spot", "position": [0, 3, 3], "look_at": [0, 0, -1], "intensity": 5, "inner": 20, "outer": 30}]})");
+  const VirtualLightSet set =
+      make_virtual_lights(scene, {.lights = 60, .block_texels = 4, .keep_texels = true}, {});
+  VirtualLightSet both = set;
+  both.lights.insert(both.lights.end(), set.texels.begin(), set.texels.end()), both.parts = set.texels.size();
+  for (const RadiusParams& rule :
+       {RadiusParams{}, RadiusParams{.rule = RadiusRule::density, .factor = 0.5f},
+        RadiusParams{.rule = RadiusRule::neighbours}, RadiusParams{.rule = RadiusRule::metres}}) {
+    const auto alone = virtual_light_radii(set, rule, 20), all = virtual_light_radii(both, rule, 20);
+    ASSERT_EQ(all.size(), set.lights.size() + set.texels.size());
+    for (size_t i = 0; i < set.lights.size(); ++i) {
+      EXPECT_EQ(all[i], alone[i]);
+      // Disks that share an area: their squares add up.
+      double squares = 0;
+      for (uint32_t t = 0; t < set.lights[i].texel_count; ++t)
+        squares += std::pow(all[set.lights.size() + set.lights[i].first_texel + t], 2.0);
+      EXPECT_NEAR(squares, alone[i] * alone[i], 1e-4 * alone[i] * alone[i]);
+    }
+  }
+}
+
 TEST(virtual_light_radius, is_positive_where_lights_share_a_place_or_are_alone) {
   VirtualLightSet set;
   for (const auto rule :

@@ -110,17 +110,19 @@ void VplIntegrator::account(const TilePoints& points, int first, int count, cons
                             TileStats& stats) const {
   const bool yuksel = params_.attenuation == VplParams::Attenuation::yuksel;
   for (int j = 0; j < count; ++j) {
+    const vec3 p = lights().position(first + j);
+    const int row = visible.at(j, 0);
+    float sum = 0, taken = 0;
+#pragma omp simd reduction(+ : sum, taken)
     for (int k = 0; k < points.count; ++k) {
-      const int i = visible.at(j, k);
-      const double used = luminance({visible.r[i], visible.g[i], visible.b[i]});
-      if (!(used > 0)) continue;
-      const vec3 to_light = lights().position(first + j) - points.position(k);
-      const float d2 = dot(to_light, to_light);
-      const double attenuation = yuksel ? vpl_yuksel(d2, shortest_) : vpl_inverse_square(d2, shortest_);
-      const double whole = used / (attenuation * d2);
-      stats.total_energy += whole;
-      stats.clamped_energy += whole - used;
+      const float used = luminance({visible.r[row + k], visible.g[row + k], visible.b[row + k]});
+      const float d2 = sqr(p.x - points.x[k]) + sqr(p.y - points.y[k]) + sqr(p.z - points.z[k]);
+      const float attenuation = yuksel ? vpl_yuksel(d2, shortest_) : vpl_inverse_square(d2, shortest_);
+      const float whole = used > 0 ? used / (attenuation * d2) : 0.0f;
+      sum += whole, taken += whole - used;
     }
+    stats.total_energy += sum;
+    stats.clamped_energy += taken;
   }
 }
 

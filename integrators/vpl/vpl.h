@@ -16,7 +16,7 @@ struct VplParams : ManyLightsParams {
   float clamp = 0;
 
   void visit(ParamVisitor& v) {
-    ManyLightsParams::visit(v, 2, true);
+    ManyLightsParams::visit(v, {.occlusions = 2, .skip = true});
     v.choice("emission", emission, {"brdf", "diffuse"},
              "brdf: a virtual light reflects by the whole BRDF of its surface; diffuse: by its diffuse part");
     v.choice("attenuation", attenuation, {"clamp", "yuksel"},

@@ -14,7 +14,7 @@ struct VsglParams : ManyLightsParams {
 
   VsglParams() { block_texels = 14; }  // Mézières 2022, section 5.2.8
   void visit(ParamVisitor& v) {
-    ManyLightsParams::visit(v, 2);
+    ManyLightsParams::visit(v, {.occlusions = 2, .split = false});
     v.choice("generation", generation, {"2015", "2024"},
              "2015: the lobes that Mézières 2022 compares with; 2024: those of the public code since then");
   }
@@ -34,6 +34,7 @@ class VsglIntegrator : public ManyLights {
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
+  bool gather_traces() const override { return true; }
 
  private:
   VsglParams params_;

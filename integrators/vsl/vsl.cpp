@@ -23,6 +23,8 @@ struct BrdfDirections {
 
 struct VslTile : TileBrdfs {
   std::vector<BrdfDirections> directions;
+  uint64_t matt = 0;                          ///< bits of the points whose BRDF is one number
+  alignas(64) Floats mr, mg, mb;              ///< that number, 1/sr
   alignas(64) Floats side_x, side_y, side_z;  ///< fixes the turn about the cone's axis: view and normal
 
   explicit VslTile(const TilePoints& points) : TileBrdfs(points) {
@@ -30,6 +32,9 @@ struct VslTile : TileBrdfs {
       const Surface& s = points.surface(k);
       const vec3 side = s.w_out + 0.618f * s.shading.z;
       side_x[k] = side.x, side_y[k] = side.y, side_z[k] = side.z;
+      vec3 f(0);
+      if (brdfs.constant(k, &f)) matt |= uint64_t{1} << k;
+      mr[k] = f.x, mg[k] = f.y, mb[k] = f.z;
     }
   }
 };
@@ -56,6 +61,11 @@ struct Rays {
   alignas(64) Floats x, y, z;     ///< towards the light, the point's shading frame
   alignas(64) Floats ex, ey, ez;  ///< from the light, its shading frame
   alignas(64) Floats cosines;     ///< of receiver and light; 0 below either horizon
+};
+
+/// Points [begin, end), multiples of 8.
+struct Run {
+  int begin, end;
 };
 
 /// A light's numbers in registers.
@@ -94,7 +104,8 @@ bool see(const TilePoints& points, const VslTile& tile, const Sphere& light, Con
     const float sine = min(radius * inverse, 1.0f);
     const float above_light = -dot(n, w);
     const float above_point = w.x * points.nx[k] + w.y * points.ny[k] + w.z * points.nz[k];
-    const float lit = above_light > -sine && above_point > -sine ? 1.0f : 0.0f;
+    const float above_plane = w.x * points.gx[k] + w.y * points.gy[k] + w.z * points.gz[k];
+    const float lit = above_light > -sine && above_point > -sine && above_plane > -sine ? 1.0f : 0.0f;
     out.lit[k] = lit;
     any += lit;
 
@@ -125,31 +136,49 @@ inline void aim(const TilePoints& points, const Sphere& light, int k, vec3 w, fl
   out.ez[k] = -dot(from, light.frame.z);
 }
 
-/// Sample `i` of the lattice in every point's cone. (VSL-3)
+/// A direction of point k's cone. (VSL-3)
+[[gnu::always_inline]] inline vec3 in_cone(const Cones& cones, int k, float u, float c, float s) {
+  const float shifted = u + cones.shift[k];
+  const float inside = shifted >= 1.0f ? shifted - 1.0f : shifted;
+  const float tc = cones.turn_c[k] * c - cones.turn_s[k] * s, ts = cones.turn_s[k] * c + cones.turn_c[k] * s;
+  return vsl_direction(vec3(cones.wx[k], cones.wy[k], cones.wz[k]),
+                       vec3(cones.xx[k], cones.xy[k], cones.xz[k]),
+                       vec3(cones.yx[k], cones.yy[k], cones.yz[k]), cones.one_minus_cos[k], inside, tc, ts);
+}
+
+/// Adds the cosines of one sample of every point's cone: all that matters between matt surfaces.
 template <bool kFrozen>
-void aim_in_cone(const TilePoints& points, const Sphere& light, const Cones& cones, float u, float c, float s,
-                 Rays& out) {
+void add_cosines(const TilePoints& points, Run run, const Sphere& light, const Cones& cones, float u, float c,
+                 float s, float* sum) {
 #pragma omp simd
-  for (int k = 0; k < points.padded; ++k) {
-    const float shifted = u + cones.shift[k];
-    const float inside = shifted >= 1.0f ? shifted - 1.0f : shifted;
-    const float tc = cones.turn_c[k] * c - cones.turn_s[k] * s,
-                ts = cones.turn_s[k] * c + cones.turn_c[k] * s;
-    const vec3 axis(cones.wx[k], cones.wy[k], cones.wz[k]);
-    const vec3 w =
-        vsl_direction(axis, vec3(cones.xx[k], cones.xy[k], cones.xz[k]),
-                      vec3(cones.yx[k], cones.yy[k], cones.yz[k]), cones.one_minus_cos[k], inside, tc, ts);
+  for (int k = run.begin; k < run.end; ++k) {
+    const vec3 w = in_cone(cones, k, u, c, s);
+    const vec3 from = kFrozen ? vec3(cones.wx[k], cones.wy[k], cones.wz[k]) : w;
+    const float receiver = w.x * points.nx[k] + w.y * points.ny[k] + w.z * points.nz[k];
+    const float side = w.x * points.gx[k] + w.y * points.gy[k] + w.z * points.gz[k];
+    const float both = max(receiver, 0.0f) * max(-dot(light.normal, from), 0.0f);
+    sum[k] += side > 0.0f ? both : 0.0f;
+  }
+}
+
+/// Sample `i` of the lattice in every point's cone.
+template <bool kFrozen>
+void aim_in_cone(const TilePoints& points, Run run, const Sphere& light, const Cones& cones, float u, float c,
+                 float s, Rays& out) {
+#pragma omp simd
+  for (int k = run.begin; k < run.end; ++k) {
+    const vec3 axis(cones.wx[k], cones.wy[k], cones.wz[k]), w = in_cone(cones, k, u, c, s);
     aim(points, light, k, w, cones.lit[k], kFrozen, axis, out);
   }
 }
 
 /// The points' own directions, where they lie in the cone. Returns whether any does.
 template <bool kFrozen>
-bool aim_by_brdf(const TilePoints& points, const Sphere& light, const Cones& cones, const BrdfDirections& d,
-                 Rays& out) {
+bool aim_by_brdf(const TilePoints& points, Run run, const Sphere& light, const Cones& cones,
+                 const BrdfDirections& d, Rays& out) {
   float any = 0;
 #pragma omp simd reduction(+ : any)
-  for (int k = 0; k < points.padded; ++k) {
+  for (int k = run.begin; k < run.end; ++k) {
     const vec3 axis(cones.wx[k], cones.wy[k], cones.wz[k]), w(d.x[k], d.y[k], d.z[k]);
     const vec3 off = w - axis;
     // 1 - cos between unit vectors, from their difference.
@@ -239,75 +268,122 @@ std::unique_ptr<TileState> VslIntegrator::prepare_tile(const TilePoints& points)
   return tile;
 }
 
-void VslIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
-  const auto& tile = static_cast<const VslTile&>(*points.state);
-  const int n = points.padded, cone = cone_samples(), brdf = brdf_samples();
+/// One light against a tile's points: what its samples share, and where they add up.
+struct VslIntegrator::OneLight {
+  const TilePoints& points;
+  const VslTile& tile;
+  Sphere light{};
   Cones cones;
   Rays rays;
-  alignas(64) Floats r, g, b, er, eg, eb, pdf;
+  float *sum_r = nullptr, *sum_g = nullptr, *sum_b = nullptr;
+};
+
+void VslIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
+  OneLight one{.points = points, .tile = static_cast<const VslTile&>(*points.state)};
   for (int j = 0; j < count; ++j) {
-    const int l = first + j;
-    float *sum_r = &out.r[out.at(j, 0)], *sum_g = &out.g[out.at(j, 0)], *sum_b = &out.b[out.at(j, 0)];
-    for (int k = 0; k < n; ++k) sum_r[k] = sum_g[k] = sum_b[k] = 0;
-    const Sphere light{lights().position(l), lights().normal(l), lights().frame(l), lights().radius[l],
-                       static_cast<uint32_t>(l)};
-    if (!see(points, tile, light, cones)) continue;
+    const int l = first + j, row = out.at(j, 0);
+    one.sum_r = &out.r[row], one.sum_g = &out.g[row], one.sum_b = &out.b[row];
+    for (int k = 0; k < points.padded; ++k) one.sum_r[k] = one.sum_g[k] = one.sum_b[k] = 0;
+    one.light = {lights().position(l), lights().normal(l), lights().frame(l), lights().radius[l],
+                 static_cast<uint32_t>(l)};
+    if (!see(points, one.tile, one.light, one.cones)) continue;
 
-    // Emission for the directions in `rays`; a constant one stays as it is, a frozen one after the first.
-    vec3 flat(0);
-    const bool constant = emitters_.constant(l, &flat);
-    const auto emit = [&](bool again) {
-      if (constant || again) return;
-      emitters_.evaluate_one(l, n, rays.ex.data(), rays.ey.data(), rays.ez.data(), er.data(), eg.data(),
-                             eb.data());
-    };
-    if (constant) er.fill(flat.x), eg.fill(flat.y), eb.fill(flat.z);
+    // Samples cost more than a shadow ray: eight points that are all hidden have none.
+    uint64_t lit = 0;
+    for (int k = 0; k < points.count; ++k) lit |= uint64_t{one.cones.lit[k] > 0} << k;
+    lit = visible(points, l, lit, &out.shadow_rays);
+    for (int k = 0; k < points.padded; ++k) one.cones.lit[k] = static_cast<float>(lit >> k & 1);
+    vec3 flat;
+    const uint64_t matt =
+        cone_samples() == params_.samples && emitters_.constant(l, &flat) ? one.tile.matt : 0;
+    const auto part = [&](int k) { return !(lit >> k & 0xff) ? 0 : (matt >> k & 0xff) != 0xff ? 1 : 2; };
+    for (int begin = 0, end = 0; begin < points.padded; begin = end) {
+      const int kind = part(begin);
+      while (end < points.padded && part(end) == kind) end += 8;
+      if (kind == 1) sum_samples(one, begin, end);
+      if (kind == 2) sum_cosines(one, begin, end, flat * lights().power(l));
+    }
+  }
+}
 
-    // (VSL-4) from the cone, with (VSL-6) where the BRDF is sampled too.
-    for (int i = 0; i < cone; ++i) {
-      const auto aim_all = params_.frozen ? aim_in_cone<true> : aim_in_cone<false>;
-      aim_all(points, light, cones, lattice_u_[i], lattice_c_[i], lattice_s_[i], rays);
-      emit(params_.frozen && i > 0);
-      if (brdf == 0) {
-        tile.brdfs.evaluate(0, n, rays.x.data(), rays.y.data(), rays.z.data(), r.data(), g.data(), b.data());
-        pdf.fill(0);
-      } else {
-        tile.brdfs.evaluate_with_pdf(0, n, rays.x.data(), rays.y.data(), rays.z.data(), r.data(), g.data(),
-                                     b.data(), pdf.data());
-      }
-      const auto cones_drawn = static_cast<float>(cone), brdfs_drawn = static_cast<float>(brdf);
-      for (int k = 0; k < n; ++k) {
-        const float solid_angle = 2.0f * kPi * cones.one_minus_cos[k];
-        const float weight =
-            rays.cosines[k] * cones.scale[k] / (cones_drawn + brdfs_drawn * pdf[k] * solid_angle);
-        sum_r[k] += min(r[k] * weight * er[k], kMost);
-        sum_g[k] += min(g[k] * weight * eg[k], kMost);
-        sum_b[k] += min(b[k] * weight * eb[k], kMost);
-      }
+void VslIntegrator::sum_cosines(OneLight& one, int begin, int end, vec3 sent) const {
+  alignas(64) Floats sum;
+  std::fill(&sum[begin], &sum[0] + end, 0.0f);
+  const auto add = params_.frozen ? add_cosines<true> : add_cosines<false>;
+  for (int i = 0; i < params_.samples; ++i)
+    add(one.points, {begin, end}, one.light, one.cones, lattice_u_[i], lattice_c_[i], lattice_s_[i],
+        sum.data());
+  const float each = 1.0f / static_cast<float>(params_.samples);
+  for (int k = begin; k < end; ++k) {
+    const float weight = sum[k] * each * one.cones.scale[k] * one.cones.lit[k];
+    one.sum_r[k] = min(one.tile.mr[k] * weight * sent.x, kMost);
+    one.sum_g[k] = min(one.tile.mg[k] * weight * sent.y, kMost);
+    one.sum_b[k] = min(one.tile.mb[k] * weight * sent.z, kMost);
+  }
+}
+
+void VslIntegrator::sum_samples(OneLight& one, int begin, int end) const {
+  const Run run{begin, end};
+  const Sphere& light = one.light;
+  const int l = static_cast<int>(light.index), n = end - begin;
+  const int cone = cone_samples(), brdf = brdf_samples();
+  const auto cones_drawn = static_cast<float>(cone), brdfs_drawn = static_cast<float>(brdf);
+  const Cones& cones = one.cones;
+  Rays& rays = one.rays;
+  alignas(64) Floats r, g, b, er, eg, eb, pdf;
+
+  // Emission for the directions in `rays`; a constant one stays as it is, a frozen one after the first.
+  vec3 flat(0);
+  const bool constant = emitters_.constant(l, &flat);
+  const auto emit = [&](bool again) {
+    if (constant || again) return;
+    emitters_.evaluate_one(l, n, &rays.ex[begin], &rays.ey[begin], &rays.ez[begin], &er[begin], &eg[begin],
+                           &eb[begin]);
+  };
+  if (constant) er.fill(flat.x), eg.fill(flat.y), eb.fill(flat.z);
+  if (brdf == 0) pdf.fill(0);
+
+  // (VSL-4) from the cone, with (VSL-6) where the BRDF is sampled too.
+  const auto aim_all = params_.frozen ? aim_in_cone<true> : aim_in_cone<false>;
+  for (int i = 0; i < cone; ++i) {
+    aim_all(one.points, run, light, cones, lattice_u_[i], lattice_c_[i], lattice_s_[i], rays);
+    emit(params_.frozen && i > 0);
+    if (brdf == 0)
+      one.tile.brdfs.evaluate(begin, end, &rays.x[begin], &rays.y[begin], &rays.z[begin], &r[begin],
+                              &g[begin], &b[begin]);
+    else
+      one.tile.brdfs.evaluate_with_pdf(begin, end, &rays.x[begin], &rays.y[begin], &rays.z[begin], &r[begin],
+                                       &g[begin], &b[begin], &pdf[begin]);
+    for (int k = begin; k < end; ++k) {
+      const float solid_angle = 2.0f * kPi * cones.one_minus_cos[k];
+      const float weight =
+          rays.cosines[k] * cones.scale[k] / (cones_drawn + brdfs_drawn * pdf[k] * solid_angle);
+      one.sum_r[k] += min(r[k] * weight * er[k], kMost);
+      one.sum_g[k] += min(g[k] * weight * eg[k], kMost);
+      one.sum_b[k] += min(b[k] * weight * eb[k], kMost);
     }
-    // (VSL-5) from the points' BRDFs.
-    for (int i = 0; i < brdf; ++i) {
-      const BrdfDirections& d = tile.directions[i];
-      const auto aim_all = params_.frozen ? aim_by_brdf<true> : aim_by_brdf<false>;
-      if (!aim_all(points, light, cones, d, rays)) continue;
-      emit(false);
-      for (int k = 0; k < n; ++k) {
-        const float solid_angle = 2.0f * kPi * cones.one_minus_cos[k];
-        const float drawn =
-            max(static_cast<float>(cone) + static_cast<float>(brdf) * d.pdf[k] * solid_angle, 1e-18f);
-        // f cos of the point is in d.
-        const float emitter = rays.z[k] > 0.0f ? rays.cosines[k] / rays.z[k] : 0.0f;
-        const float weight = min(emitter * cones.scale[k] / drawn, 1e18f);
-        sum_r[k] += min(d.r[k] * weight * er[k], kMost);
-        sum_g[k] += min(d.g[k] * weight * eg[k], kMost);
-        sum_b[k] += min(d.b[k] * weight * eb[k], kMost);
-      }
+  }
+  // (VSL-5) from the points' BRDFs.
+  const auto aim_own = params_.frozen ? aim_by_brdf<true> : aim_by_brdf<false>;
+  for (int i = 0; i < brdf; ++i) {
+    const BrdfDirections& d = one.tile.directions[i];
+    if (!aim_own(one.points, run, light, cones, d, rays)) continue;
+    emit(false);
+    for (int k = begin; k < end; ++k) {
+      const float solid_angle = 2.0f * kPi * cones.one_minus_cos[k];
+      const float drawn = max(cones_drawn + brdfs_drawn * d.pdf[k] * solid_angle, 1e-18f);
+      // f cos of the point is in d.
+      const float emitter = rays.z[k] > 0.0f ? rays.cosines[k] / rays.z[k] : 0.0f;
+      const float weight = min(emitter * cones.scale[k] / drawn, 1e18f);
+      one.sum_r[k] += min(d.r[k] * weight * er[k], kMost);
+      one.sum_g[k] += min(d.g[k] * weight * eg[k], kMost);
+      one.sum_b[k] += min(d.b[k] * weight * eb[k], kMost);
     }
-    const vec3 power = lights().power(l);
-    for (int k = 0; k < n; ++k) {
-      sum_r[k] = min(sum_r[k] * power.x, kMost), sum_g[k] = min(sum_g[k] * power.y, kMost);
-      sum_b[k] = min(sum_b[k] * power.z, kMost);
-    }
+  }
+  const vec3 power = lights().power(l);
+  for (int k = begin; k < end; ++k) {
+    one.sum_r[k] = min(one.sum_r[k] * power.x, kMost), one.sum_g[k] = min(one.sum_g[k] * power.y, kMost);
+    one.sum_b[k] = min(one.sum_b[k] * power.z, kMost);
   }
 }
 

@@ -19,7 +19,7 @@ struct VslParams : ManyLightsParams {
   bool frozen = false;
 
   void visit(ParamVisitor& v) {
-    ManyLightsParams::visit(v, 3, true);
+    ManyLightsParams::visit(v, {.occlusions = 3, .skip = true});
     v.integer("samples", samples, {1, 4096}, "samples", "directions a point and light");
     v.choice("sampling", sampling, {"cone", "brdf", "mis"},
              "directions drawn from the light's cone, from the point's BRDF, or half of each by the balance "
@@ -37,10 +37,17 @@ class VslIntegrator : public ManyLights {
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
   void gather(const TilePoints&, int first, int count, Contributions&) const override;
 
+  bool gather_traces() const override { return true; }
   bool horizons_hide() const override { return true; }
   float most(const TilePoints&, const TileBounds&, int light) const override;
 
  private:
+  struct OneLight;
+  /// Adds the light's samples for the points [begin, end), multiples of 8.
+  void sum_samples(OneLight&, int begin, int end) const;
+  /// The same from the cone's samples alone, where light and points are matt. `sent`: the light's BRDF times
+  /// its power.
+  void sum_cosines(OneLight&, int begin, int end, vec3 sent) const;
   int cone_samples() const;
   int brdf_samples() const { return params_.samples - cone_samples(); }
 
