@@ -24,10 +24,11 @@ struct Options {
 };
 
 void print_projection(const std::string& file, const DatabaseEntry& e, double seconds) {
-  fmt::print("{}: {} bands at most, {} coefficients, {}, {:.1f} kB, least share of the energy {:.1f} %{}\n",
-             file, e.bands, e.mirrored ? "half of the" : "all",
-             e.azimuths == 1 ? "isotropic" : fmt::format("{} azimuths", e.azimuths), e.bytes * 1e-3,
-             100 * e.least_share, seconds > 0 ? fmt::format(", {:.2f} s", seconds) : "");
+  fmt::print(
+      "{}: {} bands at most, {} coefficients, {}, {:.1f} kB, least share of the energy of F' {:.1f} %{}\n",
+      file, e.bands, e.mirrored ? "half of the" : "all",
+      e.azimuths == 1 ? "isotropic" : fmt::format("{} azimuths", e.azimuths), e.bytes * 1e-3,
+      100 * e.least_share, seconds > 0 ? fmt::format(", {:.2f} s", seconds) : "");
 }
 
 int project_file(const Options& options) {

@@ -185,7 +185,9 @@ void print_rows(const ShMaterial& material) {
       worst = std::min(worst, material.row_share(table, 0, k));
     for (const int k : {0, 10, 20, 30, 40, 50, 60, 70, 80, 90})
       fmt::print(" {}", material.row_bands(table, 0, k));
-    fmt::print("; largest L2 error {:.1f} %\n", 100 * std::sqrt(std::max(0.0f, 1 - worst)));
+    fmt::print(
+        "; largest L2 error {:.1f} %{}\n", 100 * std::sqrt(std::max(0.0f, 1 - worst)),
+        table == ShTable::brdf ? " (automatic tables give F the bands of F': a cosine weights it)" : "");
     // Rows that met the limit before the share they should hold, as ranges of elevations.
     std::string cut;
     const auto is_cut = [&](int k) {

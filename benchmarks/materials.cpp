@@ -1,7 +1,7 @@
-// How long a material takes to project, and a table to read.
+// How long a material takes to project, and a table to read; how exact projections of measured files are.
 //
-//     build/bench_materials [FILE.bsdf|FILE.binary ...]        seconds are medians of five, file reading
-//     excluded
+//     build/bench_materials [FILE ...]            seconds are medians of five, file reading excluded
+//     build/bench_materials accuracy FILE ...     20 bands of F' against a dense grid (some 20 s a file)
 
 #include <algorithm>
 #include <chrono>
@@ -10,14 +10,18 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "materials/material.h"
 #include "materials/measured_brdf.h"
 #include "materials/sh_projector.h"
+#include "tests/dense_projection.h"
 
 namespace zonal {
 namespace {
+
+constexpr int kChecked[] = {0, 1, 3, 6, 9, 10, 15, 25, 40, 60, 75, 80, 84, 85, 87, 89, 90};  ///< elevations
 
 double median_seconds(const auto& work) {
   std::vector<double> seconds;
@@ -54,7 +58,39 @@ void run(const std::string& name, const Bsdf& bsdf) {
               bytes * 1e-3, reading / kReads * 1e9, kept < 0 ? "!" : "");
 }
 
+/// Largest difference of F' from the grid's over all directions and channels, a share of the peak.
+void accuracy(const std::string& file) {
+  constexpr int kBands = 20, kSteps = 1800, kCount = sh_count(kBands, true);
+  const std::unique_ptr<MeasuredBrdf> brdf = load_measured(file);
+  const ShProjection projection =
+      project_material({.kind = BsdfKind::measured, .measured = brdf.get()}, {.bands = kBands});
+  std::printf("%-24s", std::filesystem::path(file).stem().string().c_str());
+  if (!projection.mirrored || projection.azimuths > 1) {
+    std::printf(" not symmetric about the plane of w_out: the grid is for those that are\n");
+    return;
+  }
+  for (const int elevation : kChecked) {
+    const double theta = ShMaterial::degrees(elevation) * test::kPiD / 180;
+    const test::DenseProjection dense = test::dense_projection(*brdf, theta, kBands, kSteps);
+    const ShRow& row = projection.rows[1][size_t(elevation)];
+    double worst = 0;
+    for (int c = 0; c < 3; ++c)
+      worst =
+          std::max(worst, test::difference(kBands, true, row.coefficients.data() + c * kCount, dense.c[c]));
+    std::printf(" %7.1e", worst);
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+}
+
 int main(int count, char** arguments) {
+  if (count > 1 && std::string_view(arguments[1]) == "accuracy") {
+    std::printf("%-24s", "");
+    for (const int elevation : kChecked) std::printf(" %7g", ShMaterial::degrees(elevation));
+    std::printf("\n");
+    for (int i = 2; i < count; ++i) accuracy(arguments[i]);
+    return 0;
+  }
   std::printf(
       "Both tables of one material, all threads. Read: both rows around w_out, 9 bands of F', one thread.\n");
   std::printf("%-28s %8s %11s %11s %9s %7s %9s %9s\n", "", "20 bands", "evaluations", "evaluations",

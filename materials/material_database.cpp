@@ -60,7 +60,7 @@ std::string projection_key(const std::string& file, const FolderOptions& options
   Hash hash;
   hash.add(read_text_file(file, "a measured material"));
   const ShProjectionOptions& p = options.projection;
-  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", ZONAL_VERSION, p.nodes, p.bands, p.share, p.most_bands,
+  hash.add(fmt::format("{} {} {} {} {} {} {} {} {}", kProjectionVersion, p.nodes, p.bands, p.share, p.most_bands,
                        p.azimuths, p.window, p.window_size, options.half));
   return hash.text();
 }
@@ -134,10 +134,9 @@ DatabaseEntry describe_projection(const ShMaterial& material) {
   e.bands = material.max_bands(), e.mirrored = material.mirrored(), e.azimuths = material.azimuths();
   e.albedo = material.albedo(), e.bytes = material.bytes().size();
   e.least_share = 1;
-  for (const ShTable table : {ShTable::brdf, ShTable::brdf_cosine})
-    for (int a = 0; a < e.azimuths; ++a)
-      for (int k = 0; k < ShMaterial::kElevations; ++k)
-        e.least_share = std::min(e.least_share, material.row_share(table, a, k));
+  for (int a = 0; a < e.azimuths; ++a)
+    for (int k = 0; k < ShMaterial::kElevations; ++k)
+      e.least_share = std::min(e.least_share, material.row_share(ShTable::brdf_cosine, a, k));
   return e;
 }
 

@@ -29,7 +29,7 @@ struct DatabaseEntry {
   int azimuths = 1;
   vec3 albedo{0};
   size_t bytes = 0;       ///< of the projection
-  float least_share = 0;  ///< of the energy that a row's bands hold, smallest of all rows
+  float least_share = 0;  ///< of the energy of F' that a row's bands hold, smallest of all rows
   std::vector<std::string> notes;
 };
 

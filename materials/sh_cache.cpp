@@ -18,9 +18,6 @@
 namespace zonal {
 namespace {
 
-/// Raise it when the projector changes: older files are then of another content.
-constexpr int kProjectionVersion = 2;
-
 /// What it reflects between some directions: tells tables of an older version's models and readers apart.
 std::string samples(const Bsdf& bsdf) {
   Hash hash;

@@ -49,35 +49,33 @@ ShLayers::Weights ShLayers::weights(const Bsdf& b) {
 void ShLayers::add_level(float roughness, std::shared_ptr<const ShMaterial> table, bool energies) {
   Level level{roughness, std::move(table), {}, {}};
   const ShMaterial& t = *level.table;
-  for (int which = 0; energies && which < 2; ++which) {
-    for (int e = 0; e < ShMaterial::kElevations; ++e) {
-      const std::vector<float> row = t.row(ShTable(which), 0, e);
-      const int bands = t.row_bands(ShTable(which), 0, e), count = sh_count(bands, t.mirrored());
-      const float* x[3] = {row.data(), row.data() + count, row.data() + 2 * count};
-      level.start[which].push_back(int(level.energy[which].size()));
-      Symmetric sum{}, last{};
-      for (int l = 0; l < bands; ++l) {
-        last = {};
-        for (int i = sh_count(l, t.mirrored()); i < sh_count(l + 1, t.mirrored()); ++i) {
-          const float a = x[0][i], b = x[1][i], c = x[2][i];
-          const Symmetric product = {a * a, b * b, c * c, a * b, a * c, b * c};
-          for (int k = 0; k < 6; ++k) last[k] += product[k];
-        }
-        for (int k = 0; k < 6; ++k) sum[k] += last[k];
-        level.energy[which].push_back(sum);
+  for (int e = 0; energies && e < ShMaterial::kElevations; ++e) {
+    const std::vector<float> row = t.row(ShTable::brdf_cosine, 0, e);
+    const int bands = t.row_bands(ShTable::brdf_cosine, 0, e), count = sh_count(bands, t.mirrored());
+    const float* x[3] = {row.data(), row.data() + count, row.data() + 2 * count};
+    level.start.push_back(int(level.energy.size()));
+    Symmetric sum{}, last{};
+    for (int l = 0; l < bands; ++l) {
+      last = {};
+      for (int i = sh_count(l, t.mirrored()); i < sh_count(l + 1, t.mirrored()); ++i) {
+        const float a = x[0][i], b = x[1][i], c = x[2][i];
+        const Symmetric product = {a * a, b * b, c * c, a * b, a * c, b * c};
+        for (int k = 0; k < 6; ++k) last[k] += product[k];
       }
-      // Of the bands left out only their share in the three channels' sum is known; they are taken to be made
-      // like the last band kept, which is all specular where the base is smooth.
-      const float held = t.row_share(ShTable(which), 0, e), whole = sum[0] + sum[1] + sum[2];
-      const float of_last = last[0] + last[1] + last[2];
-      if (held > 0 && of_last > 0) {
-        const float tail = std::fmax(1 / held - 1, 0.0f) * whole / of_last;
-        for (int k = 0; k < 6; ++k) sum[k] += tail * last[k];
-      }
-      level.energy[which].push_back(sum);
+      for (int k = 0; k < 6; ++k) sum[k] += last[k];
+      level.energy.push_back(sum);
     }
-    level.start[which].push_back(int(level.energy[which].size()));
+    // Of the bands left out only their share in the three channels' sum is known; they are taken to be made
+    // like the last band kept, which is all specular where the base is smooth.
+    const float held = t.row_share(ShTable::brdf_cosine, 0, e), whole = sum[0] + sum[1] + sum[2];
+    const float of_last = last[0] + last[1] + last[2];
+    if (held > 0 && of_last > 0) {
+      const float tail = std::fmax(1 / held - 1, 0.0f) * whole / of_last;
+      for (int k = 0; k < 6; ++k) sum[k] += tail * last[k];
+    }
+    level.energy.push_back(sum);
   }
+  if (energies) level.start.push_back(int(level.energy.size()));
   levels_.push_back(std::move(level));
 }
 
@@ -95,11 +93,12 @@ int ShLayers::bands(const Bsdf& b, ShTable table, vec3 w_out, float share) const
   if (levels_.empty() || b.kind == BsdfKind::black || !(w_out.z > kMinCosine)) return 0;
   const Place p = place(b);
   const Level& level = levels_[p.level + (p.blend >= 0.5f ? 1 : 0)];
-  if (level.energy[0].empty()) return level.table->bands(table, w_out);
+  const int stored = level.table->bands(table, w_out);
+  if (level.energy.empty()) return stored;
 
   const float angle = std::atan2(std::sqrt(sqr(w_out.x) + sqr(w_out.y)), w_out.z) * (180 * kInvPi);
   const int row = angle > 89.25f ? ShMaterial::kElevations - 1 : int(angle + 0.5f);
-  const int start = level.start[int(table)][size_t(row)], end = level.start[int(table)][size_t(row) + 1] - 1;
+  const int start = level.start[size_t(row)], end = level.start[size_t(row) + 1] - 1;
   Symmetric m{};
   for (const auto& w : weights(b)) {
     const Symmetric product = {w[0] * w[0],     w[1] * w[1],     w[2] * w[2],
@@ -107,14 +106,14 @@ int ShLayers::bands(const Bsdf& b, ShTable table, vec3 w_out, float share) const
     for (int k = 0; k < 6; ++k) m[k] += product[k];
   }
   const auto energy = [&](int i) {
-    const Symmetric& e = level.energy[int(table)][size_t(i)];
+    const Symmetric& e = level.energy[size_t(i)];
     return m[0] * e[0] + m[1] * e[1] + m[2] * e[2] + m[3] * e[3] + m[4] * e[4] + m[5] * e[5];
   };
   const float wanted = share * energy(end);
   for (int i = start; i < end; ++i) {
-    if (energy(i) >= wanted) return i - start + 1;
+    if (energy(i) >= wanted) return std::min(i - start + 1, stored);
   }
-  return end - start;
+  return std::min(end - start, stored);
 }
 
 int ShLayers::look_up(const Bsdf& b, ShTable table, vec3 w_out, int bands, int stride, float* out) const {

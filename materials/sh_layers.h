@@ -28,6 +28,7 @@ class ShLayers {
   void add_level(float roughness, std::shared_ptr<const ShMaterial> table, bool energies);
 
   bool mirrored() const { return levels_.empty() || levels_[0].table->mirrored(); }
+  /// That F' of this mixture needs; of F at most as many.
   int bands(const Bsdf& bsdf, ShTable table, vec3 w_out, float share) const;
   /// As ShMaterial::look_up. Zero without levels.
   int look_up(const Bsdf& bsdf, ShTable table, vec3 w_out, int bands, int stride, float* out) const;
@@ -42,10 +43,10 @@ class ShLayers {
   struct Level {
     float roughness;
     std::shared_ptr<const ShMaterial> table;
-    /// Inner products of the channels' coefficients, bands 0..l summed, row after row; then their estimate
-    /// for all bands.
-    std::vector<Symmetric> energy[2];
-    std::vector<int> start[2];  ///< of each elevation's row in `energy`
+    /// Of F': inner products of the channels' coefficients, bands 0..l summed, row after row; then their
+    /// estimate for all bands.
+    std::vector<Symmetric> energy;
+    std::vector<int> start;  ///< of each elevation's row in `energy`
   };
   struct Place {
     size_t level;

@@ -21,14 +21,13 @@ namespace {
 /// Lambert's lobes of albedo 1: the upper hemisphere's indicator, or the clamped cosine, over pi.
 struct LambertTable {
   std::array<float, ShMaterial::kMaxBands> zonal[2];
-  /// Bands that hold `share` of the energy, 2/pi and 2/(3 pi).
-  int bands(ShTable table, float share) const {
-    const double whole = (table == ShTable::brdf ? 2.0 : 2.0 / 3) / kPi;
+  /// Bands that hold `share` of the energy of F', which is 2/(3 pi).
+  int bands(float share) const {
     double sum = 0;
     for (int l = 0; l < ShMaterial::kMaxBands; ++l) {
-      const double z = zonal[int(table)][l];
+      const double z = zonal[int(ShTable::brdf_cosine)][l];
       sum += z * z;
-      if (sum >= share * whole) return l + 1;
+      if (sum >= share * 2.0 / (3 * kPi)) return l + 1;
     }
     return ShMaterial::kMaxBands;
   }
@@ -138,10 +137,7 @@ void ShMaterials::Impl::add(const Material& material, const Stop& stop) {
   Entry& entry = entries.emplace_back();
   if (dynamic_cast<const LambertMaterial*>(&material)) {
     entry.lambert = true;
-    for (const ShTable t : {ShTable::brdf, ShTable::brdf_cosine}) {
-      max_bands =
-          std::max(max_bands, options.bands > 0 ? options.bands : lambert_table().bands(t, options.share));
-    }
+    max_bands = std::max(max_bands, options.bands > 0 ? options.bands : lambert_table().bands(options.share));
   } else if (const auto* measured = dynamic_cast<const MeasuredMaterial*>(&material)) {
     if (!measured->sh_file.empty()) {
       entry.table = std::make_shared<const ShMaterial>(ShMaterial::open(measured->sh_file));
@@ -183,7 +179,7 @@ int ShMaterials::bands(uint32_t material, const Bsdf& bsdf, ShTable table, vec3 
   const Impl::Entry& entry = impl_->entries[material];
   const ShMaterialsOptions& o = impl_->options;
   if (bsdf.kind == BsdfKind::black || !(w_out.z > kMinCosine)) return 0;
-  if (entry.lambert) return o.bands > 0 ? o.bands : lambert_table().bands(table, o.share);
+  if (entry.lambert) return o.bands > 0 ? o.bands : lambert_table().bands(o.share);
   const int stored =
       entry.table ? entry.table->bands(table, w_out) : entry.layers.bands(bsdf, table, w_out, o.share);
   return o.bands > 0 ? std::min(o.bands, stored) : stored;

@@ -22,7 +22,7 @@ namespace zonal {
 
 struct ShMaterialsOptions {
   int bands = 0;  ///< 1..100 for every material; 0: as many as each material needs (`share`, `most_bands`)
-  float share = 0.95f;  ///< of a row's energy, (0, 1)
+  float share = 0.95f;  ///< of the energy of a row of F', (0, 1)
   int most_bands = 64;  ///< where bands == 0
   int azimuths = 36;    ///< of an anisotropic model's table, >= 1
   std::function<void(const std::string& material, double share)> progress =
@@ -40,7 +40,7 @@ class ShMaterials {
   /// No coefficient with m < 0: layouts as in sh_material.h.
   bool mirrored(uint32_t material) const;
   /// Bands worth reading for this point and view: what the options ask for, or what holds `share` of the
-  /// energy of this very mixture at the nearest tabulated view.
+  /// energy of F' of this very mixture at the nearest tabulated view; of F at most as many.
   int bands(uint32_t material, const Bsdf& bsdf, ShTable table, vec3 w_out) const;
   /// As ShMaterial::look_up, for the very point `bsdf` was made at.
   int look_up(uint32_t material, const Bsdf& bsdf, ShTable table, vec3 w_out, int bands, int stride,

@@ -89,22 +89,21 @@ struct RowPair {
   size_t evaluations;
 };
 
-RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirrored, double asymmetry,
+/// `average`: the half m >= 0 is made from the mean of both sides.
+RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirrored, bool average,
                     const ShProjectionOptions& options) {
   const bool fan = options.azimuths > 1;
   const int most = options.bands > 0 ? options.bands
                    : fan             ? std::min(options.most_bands, kAnisotropicBands)
                                      : options.most_bands;
   const double theta = ShMaterial::degrees(elevation) * kRadians;
-  HemisphereOptions quadrature{.half = mirrored, .average = asymmetry > kAverage};
+  HemisphereOptions quadrature{.half = mirrored, .average = average};
   if (fan) {
     // There are thousands of rows, and few bands that ask for less.
     quadrature.resolve_bands = 16, quadrature.tolerance = 1e-5, quadrature.most_nodes = 8000;
   }
   if (options.nodes > 0) quadrature.resolve_bands = 8, quadrature.most_nodes = options.nodes;
   quadrature.resolve_bands = std::max(quadrature.resolve_bands, most);
-  if (!mirrored) quadrature.most_nodes *= 2;
-  if (elevation >= 88) quadrature.most_nodes *= 2;  // the highlight is cut by the horizon
   const HemisphereNodes nodes = hemisphere_nodes(bsdf, azimuth, theta, quadrature);
 
   RowPair pair;
@@ -118,15 +117,16 @@ RowPair project_row(const Bsdf& bsdf, double azimuth, int elevation, bool mirror
     project_nodes(nodes, tried + 1, mirrored, ShBasis::spherical, c[0].data());
     c[1] = cosine_table(tried, mirrored, ShBasis::spherical, c[0]);
     bool enough = true;
-    for (int table = 0; table < 2; ++table) {
+    for (const int table : {1, 0}) {
       ShRow& row = pair.row[table];
       const std::vector<double> energy = band_energies(tried + 1 - table, mirrored, c[table]);
       row.bands = tried;
       if (options.bands == 0) {
-        const auto at = std::find_if(energy.begin(), energy.begin() + tried,
+        const int limit = table == 1 ? tried : pair.row[1].bands;
+        const auto at = std::find_if(energy.begin(), energy.begin() + limit,
                                      [&](double e) { return e >= double(options.share) * row.energy; });
-        if (at == energy.begin() + tried) enough = enough && tried == most;
-        row.bands = std::min(tried, int(at - energy.begin()) + 1);
+        if (table == 1) enough = at != energy.begin() + limit || tried == most;
+        row.bands = std::min(limit, int(at - energy.begin()) + 1);
       }
       row.captured = row.energy > 0 ? energy[size_t(row.bands) - 1] / row.energy : 1;
       row.coefficients = cut(tried + 1 - table, row.bands, mirrored, options, c[table]);
@@ -202,7 +202,7 @@ ShProjection project_material(const Bsdf& bsdf, const ShProjectionOptions& optio
           }
           const double azimuth = 360.0 * kRadians * (r / n) / out.azimuths;
           pairs[size_t(r)] =
-              project_row(bsdf, azimuth, r % n, out.mirrored, asymmetry[size_t(r % n)], row_options);
+              project_row(bsdf, azimuth, r % n, out.mirrored, out.asymmetry > kAverage, row_options);
           if (!progress) continue;
           const std::lock_guard lock(telling);
           progress(double(++done) / rows);
@@ -243,7 +243,6 @@ BandStudy study_bands(const Bsdf& bsdf, double theta_out, int most_bands) {
   const bool mirrored = asymmetry <= kMirrorTolerance;
   HemisphereOptions options{.half = mirrored, .average = asymmetry > kAverage, .hemispherical = true};
   options.resolve_bands = std::max(options.resolve_bands, most_bands);
-  if (!mirrored) options.most_nodes *= 2;
   const HemisphereNodes nodes = hemisphere_nodes(bsdf, 0, theta_out, options);
   const double whole[2] = {nodes.energy, nodes.energy_cosine};
   BandStudy study;

@@ -15,9 +15,15 @@
 
 namespace zonal {
 
+/// Raise it when projections change: tables in the cache and in databases are then made anew.
+inline constexpr int kProjectionVersion = 3;
+
 struct ShProjectionOptions {
-  int bands = 0;        ///< 1..100 for every row; 0: each row keeps the bands that hold `share` of its energy
-  float share = 0.95f;  ///< of the integral of F^2 (of F'^2 for F'), (0, 1)
+  /// 1..100 for every row; 0: each row of F' keeps the bands that hold `share` of its energy, and the row of
+  /// F at most as many: what F sends or receives is weighted by a cosine, and its own energy may lie at the
+  /// very horizon, where the cosine vanishes.
+  int bands = 0;
+  float share = 0.95f;  ///< of the integral of F'^2 (and of F^2), (0, 1)
   int most_bands =
       64;            ///< of a row when bands == 0; anisotropic materials have at most kAnisotropicBands then
   int azimuths = 0;  ///< rows around the normal; 0: 1 where the material is isotropic, else 90

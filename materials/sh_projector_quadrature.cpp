@@ -18,6 +18,10 @@ constexpr int kOrder = 6, kNodes = kOrder * kOrder;
 /// Half of a cell's width times the highest l: six nodes integrate exp(i 3 t) to 3e-6.
 constexpr double kPhase = 3;
 
+/// Near the normal the kinks of the data in all azimuths cross the highlight, near grazing the horizon cuts
+/// it: rows below and above get so many times more nodes, for errors like those of the others.
+constexpr double kHardBelow = 9.5 * pi / 180, kHardAbove = 84.5 * pi / 180, kHardNodes = 2.5;
+
 struct Direction {
   double x, y, z;
 };
@@ -90,9 +94,23 @@ struct Rule {
   }
 };
 
-constexpr int kIntegrands = 3;  ///< F, F cos, F^2; channels summed
+/// F and F cos of each channel (a sum would hide a dark one), F^2 of their sum; the last is empty, to make a
+/// vector.
+constexpr int kIntegrands = 8;
+using Integrals = std::array<double, kIntegrands>;
 /// How much the error of each counts: what is shaded with is F', and energies need two digits less.
-constexpr double kWeights[kIntegrands] = {0.2, 1, 0.05};
+constexpr Integrals kWeights = {0.2, 0.2, 0.2, 1, 1, 1, 0.05, 0};
+
+/// y += a x
+void add(double a, const Integrals& x, Integrals* y) {
+#pragma omp simd
+  for (int q = 0; q < kIntegrands; ++q) (*y)[q] += a * x[q];
+}
+/// y += a |x|
+void add_size(double a, const Integrals& x, Integrals* y) {
+#pragma omp simd
+  for (int q = 0; q < kIntegrands; ++q) (*y)[q] += a * std::abs(x[q]);
+}
 
 struct Cell {
   Part part;
@@ -100,8 +118,8 @@ struct Cell {
   std::array<Direction, kNodes> w{};
   std::array<double, kNodes> weight{};
   std::array<vec3, kNodes> f{};
-  double total[kIntegrands]{};
-  double tail_t[kIntegrands]{}, tail_phi[kIntegrands]{};
+  Integrals total{};
+  Integrals tail_t{}, tail_phi{};  ///< size of the two highest Legendre coefficients along each side
 };
 
 class Integrator {
@@ -165,28 +183,24 @@ void Integrator::fill(Cell* cell) const {
     for (int k = 0; k < kNodes; ++k) cell->f[k] = 0.5f * (cell->f[k] + other[k]);
   }
 
-  std::array<std::array<double, kNodes>, kIntegrands> g;
+  std::array<Integrals, kNodes> g;
   for (int k = 0; k < kNodes; ++k) {
-    const vec3 f = cell->f[k];
-    const double sum = (double(f.x) + f.y + f.z) * density[k];
-    g[0][k] = sum, g[1][k] = sum * cell->w[k].z;
-    g[2][k] = (double(f.x) * f.x + double(f.y) * f.y + double(f.z) * f.z) * density[k];
+    const glm::dvec3 f = density[k] * glm::dvec3(cell->f[k]);
+    const double z = cell->w[k].z;
+    g[k] = {f.x, f.y, f.z, z * f.x, z * f.y, z * f.z, glm::dot(f, glm::dvec3(cell->f[k])), 0};
   }
-  for (int q = 0; q < kIntegrands; ++q) {
-    double total = 0, tail_t = 0, tail_phi = 0;
-    for (int a = 0; a < kOrder; ++a) {
-      double t4 = 0, t5 = 0, p4 = 0, p5 = 0, sum = 0;
-      for (int b = 0; b < kOrder; ++b) {
-        const double along_t = g[q][a * kOrder + b], along_phi = g[q][b * kOrder + a];
-        t4 += rule.fifth[b] * along_t, t5 += rule.sixth[b] * along_t;
-        p4 += rule.fifth[b] * along_phi, p5 += rule.sixth[b] * along_phi;
-        sum += rule.weight[b] * along_t;
-      }
-      tail_t += rule.weight[a] * (std::abs(t4) + std::abs(t5));
-      tail_phi += rule.weight[a] * (std::abs(p4) + std::abs(p5));
-      total += rule.weight[a] * sum;
+  cell->total = cell->tail_t = cell->tail_phi = {};
+  for (int a = 0; a < kOrder; ++a) {
+    Integrals t4{}, t5{}, p4{}, p5{};
+    const double share = area * rule.weight[a];
+    for (int b = 0; b < kOrder; ++b) {
+      const Integrals &along_t = g[a * kOrder + b], &along_phi = g[b * kOrder + a];
+      add(rule.fifth[b], along_t, &t4), add(rule.sixth[b], along_t, &t5);
+      add(rule.fifth[b], along_phi, &p4), add(rule.sixth[b], along_phi, &p5);
+      add(share * rule.weight[b], along_t, &cell->total);
     }
-    cell->total[q] = area * total, cell->tail_t[q] = area * tail_t, cell->tail_phi[q] = area * tail_phi;
+    add_size(share, t4, &cell->tail_t), add_size(share, t5, &cell->tail_t);
+    add_size(share, p4, &cell->tail_phi), add_size(share, p5, &cell->tail_phi);
   }
 }
 
@@ -258,13 +272,15 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
   std::vector<Cell> cells =
       seeds(integrator.map(), options.half, {kPhase / options.resolve_bands, options.hemispherical});
   HemisphereNodes nodes;
-  double total[kIntegrands] = {};
+  Integrals total{};
   size_t made = 0;
   for (Cell& cell : cells) {
     integrator.fill(&cell);
     made += kNodes;
-    for (int q = 0; q < kIntegrands; ++q) total[q] += cell.total[q];
+    add(1, cell.total, &total);
   }
+  const bool hard = theta_out < kHardBelow || theta_out > kHardAbove;
+  const double most_nodes = options.most_nodes * (hard ? kHardNodes : 1) * (options.half ? 1 : 2);
 
   // Halve the worst cell, along its worse side, until all are good or the budget is spent.
   const auto error = [&](const Cell& cell) {
@@ -276,8 +292,7 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
   using Entry = std::pair<double, size_t>;
   std::priority_queue<Entry> queue;
   for (size_t i = 0; i < cells.size(); ++i) queue.push({error(cells[i]), i});
-  while (!queue.empty() && queue.top().first > options.tolerance &&
-         made + 2 * kNodes <= size_t(options.most_nodes)) {
+  while (!queue.empty() && queue.top().first > options.tolerance && double(made + 2 * kNodes) <= most_nodes) {
     const size_t index = queue.top().second;
     queue.pop();
     const Cell& worst = cells[index];
@@ -292,11 +307,11 @@ HemisphereNodes hemisphere_nodes(const Bsdf& bsdf, double azimuth, double theta_
       first.t1 = second.t0 = 0.5 * (worst.t0 + worst.t1);
     else
       first.phi1 = second.phi0 = 0.5 * (worst.phi0 + worst.phi1);
-    for (int q = 0; q < kIntegrands; ++q) total[q] -= worst.total[q];
+    add(-1, worst.total, &total);
     for (Cell* cell : {&first, &second}) {
       integrator.fill(cell);
       made += kNodes;
-      for (int q = 0; q < kIntegrands; ++q) total[q] += cell->total[q];
+      add(1, cell->total, &total);
     }
     cells[index] = first;
     cells.push_back(second);

@@ -141,13 +141,9 @@ TEST_F(MaterialCommand, takes_every_kind_of_file_from_folder_to_picture) {
       run({"material", "merl", "ggx:roughness=0.5,f0=0.9", "-o", folder_ + "/in/made/ggx.binary", "--quiet"}),
       0)
       << said_;
-  size_t files = 3;
-  if (const char* data = std::getenv("ZONAL_DATA"); data && fs::exists(std::string(data) + "/materials/rgl"))
-    for (const auto& entry : fs::directory_iterator(std::string(data) + "/materials/rgl"))
-      if (entry.path().extension() == ".bsdf") {
-        fs::create_symlink(entry.path(), folder_ + "/in/" + entry.path().filename().string());
-        ++files;
-      }
+  const std::vector<std::string> published = test::published_rgl_files();
+  for (const fs::path file : published) fs::create_symlink(file, folder_ + "/in/" + file.filename().string());
+  const size_t files = 3 + published.size();
   const std::string db = folder_ + "/db", turned = folder_ + "/db/turned";
   ASSERT_EQ(run({"material", "project", folder_ + "/in", "--bands", "6", "-o", db, "--quiet"}), 0) << said_;
   ASSERT_EQ(run({"material", "project", folder_ + "/turned", "--bands", "6", "--azimuths", "8", "-o", turned,

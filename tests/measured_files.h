@@ -1,11 +1,15 @@
 #pragma once
-/// RGL files made from an analytic BRDF, so that tests need no data: GGX with Smith's masking and Schlick's
-/// Fresnel, written down as the measurement of such a surface would be (Dupuy and Jakob 2018).
+/// RGL files: the published ones where ZONAL_DATA is set, and files made from an analytic BRDF, so that tests
+/// need no data: GGX with Smith's masking and Schlick's Fresnel, written down as the measurement of such a
+/// surface would be (Dupuy and Jakob 2018).
 ///
 ///     std::string file = write_isotropic_rgl(folder, 0.3);     // folder/ggx_0.3_rgb.bsdf
 ///     std::string other = write_anisotropic_rgl(folder);
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -191,5 +195,19 @@ inline std::string write_anisotropic_rgl(const std::string& folder) {
       .write(folder + "/ggx_anisotropic_rgb.bsdf");
   return folder + "/ggx_anisotropic_rgb.bsdf";
 }
+
+/// All .bsdf files of $ZONAL_DATA/materials/rgl, sorted; none where there is no such folder.
+inline std::vector<std::string> published_rgl_files() {
+  const char* data = std::getenv("ZONAL_DATA");
+  const std::filesystem::path folder = std::filesystem::path(data ? data : "") / "materials/rgl";
+  std::vector<std::string> files;
+  if (!data || !std::filesystem::is_directory(folder)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".bsdf") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+/// What a test says that is skipped without them.
+inline constexpr const char* kNoPublishedFiles = "set ZONAL_DATA to the folder that has materials/rgl";
 
 }  // namespace zonal::test

@@ -104,12 +104,8 @@ struct Surface {
 std::vector<Surface> surfaces(const Folder& folder) {
   std::vector<Surface> all = {{"isotropic", write_isotropic_rgl(folder.path(""), 0.3)},
                               {"anisotropic", write_anisotropic_rgl(folder.path(""))}};
-  const char* data = std::getenv("ZONAL_DATA");
-  const std::filesystem::path real = std::filesystem::path(data ? data : "") / "materials/rgl";
-  if (!data || !std::filesystem::is_directory(real)) return all;
-  for (const auto& entry : std::filesystem::directory_iterator(real))
-    if (entry.path().extension() == ".bsdf")
-      all.push_back({entry.path().stem().string(), entry.path().string()});
+  for (const std::string& file : published_rgl_files())
+    all.push_back({std::filesystem::path(file).stem().string(), file});
   return all;
 }
 

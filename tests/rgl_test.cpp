@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -22,28 +21,6 @@ namespace zonal {
 namespace {
 
 using namespace test;
-
-std::string real_file(const std::string& name) {
-  const char* data = std::getenv("ZONAL_DATA");
-  return data ? std::string(data) + "/materials/rgl/" + name : "";
-}
-
-const std::vector<std::string>& real_names() {
-  static const std::vector<std::string> names = {
-      "acrylic_felt_pink_rgb.bsdf", "acrylic_felt_purple_rgb.bsdf", "acrylic_felt_white_rgb.bsdf",
-      "cardboard_rgb.bsdf",         "cc_nothern_aurora_rgb.bsdf",   "cm_military_green_rgb.bsdf",
-      "cm_toxic_green_rgb.bsdf",    "ilm_l3_37_matte_rgb.bsdf",     "ilm_solo_m_68_rgb.bsdf",
-      "irid_flake_paint2_rgb.bsdf", "paper_white_rgb.bsdf"};
-  return names;
-}
-
-/// The real files where there are some.
-std::vector<std::string> real_files() {
-  std::vector<std::string> files;
-  for (const std::string& name : real_names())
-    if (std::filesystem::exists(real_file(name))) files.push_back(real_file(name));
-  return files;
-}
 
 RglSpec isotropic_spec() {
   return {.surface = {0.3, 0.3}};
@@ -71,7 +48,7 @@ const std::vector<Sample>& everything() {
   make("isotropic", isotropic_spec());
   make("anisotropic", anisotropic_spec(1));
   make("anisotropic, a quarter", anisotropic_spec(4));
-  for (const std::string& file : real_files())
+  for (const std::string& file : published_rgl_files())
     all.push_back({std::filesystem::path(file).stem().string(), std::make_unique<RglBrdf>(TensorFile(file))});
   return all;
 }
@@ -85,82 +62,6 @@ double lobe_width(const RglBrdf& brdf) {
 double data_density(const RglBrdf& brdf, vec3 w_out, vec3 w_in) {
   const double cosine = double(w_in.z) * RglBrdf::kCosineShare / kPiDouble;
   return (brdf.pdf(w_out, w_in) - cosine) / (1 - double(RglBrdf::kCosineShare));
-}
-
-// ---- the warp --------------------------------------------------------------------------------------------
-
-/// Two slices with empty rows, and one of noise.
-WarpGrid three_slices(int width, int height) {
-  Random random(5);
-  std::vector<float> samples;
-  for (int slice = 0; slice < 3; ++slice)
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        samples.push_back(slice < 2 && (y + slice) % 5 < 2 ? 0.0f : 7 * sqr(random.unit()) + 0.01f);
-  return WarpGrid(width, height, samples);
-}
-
-const std::vector<SliceMix>& mixes() {
-  static const std::vector<SliceMix> all = {
-      {1, {2}, {1.0f}}, {1, {0}, {1.0f}}, {2, {0, 1}, {0.3f, 0.7f}}, {2, {1, 2}, {0.9f, 0.1f}}};
-  return all;
-}
-
-TEST(RglWarp, sampling_undoes_inversion) {
-  const WarpGrid grid = three_slices(17, 23);
-  Random random(6);
-  for (const SliceMix& mix : mixes()) {
-    for (int i = 0; i < 5000; ++i) {
-      const vec2 u = random.square();
-      const vec2 p = grid.sample(mix, u);
-      // A float of the unit square is exact to 6e-8; divided by a density, which here is above 0.1 where
-      // anything is drawn.
-      float density;
-      const vec2 back = grid.invert(mix, p, &density);
-      ASSERT_GT(density, 0) << p.x << " " << p.y;
-      ASSERT_NEAR(back.x, u.x, 2e-5f) << u.x << " " << u.y;
-      ASSERT_NEAR(back.y, u.y, 2e-6f) << u.x << " " << u.y;
-      if (density < 0.1f) continue;
-      const vec2 again = grid.sample(mix, back);
-      ASSERT_NEAR(again.x, p.x, 2e-4f) << p.x << " " << p.y;
-      ASSERT_NEAR(again.y, p.y, 2e-4f) << p.x << " " << p.y;
-    }
-  }
-}
-
-TEST(RglWarp, every_mixture_integrates_to_one) {
-  // 2 x 2 Gauss points a cell are exact for a bilinear function; what is left is rounding of 350 floats.
-  const WarpGrid grid = three_slices(17, 23);
-  for (const SliceMix& mix : mixes()) {
-    double sum = 0;
-    for (int y = 0; y < 22; ++y)
-      for (int x = 0; x < 16; ++x)
-        for (const double s : {0.5 - 0.28867513459, 0.5 + 0.28867513459})
-          for (const double t : {0.5 - 0.28867513459, 0.5 + 0.28867513459})
-            sum += grid.density(mix, vec2((x + s) / 16, (y + t) / 22));
-    EXPECT_NEAR(sum / (4 * 16 * 22), 1, 1e-5);
-  }
-}
-
-TEST(RglWarp, blending_first_changes_nothing) {
-  const WarpGrid grid = three_slices(17, 23);
-  const WarpGrid one = grid.blended(mixes()[2]);
-  Random random(7);
-  for (int i = 0; i < 1000; ++i) {
-    const vec2 p = random.square();
-    float a, b;
-    const vec2 x = grid.invert(mixes()[2], p, &a), y = one.invert(SliceMix{}, p, &b);
-    ASSERT_NEAR(a, b, 1e-5f * a);
-    ASSERT_NEAR(x.x, y.x, 1e-5f);
-    ASSERT_NEAR(x.y, y.y, 1e-5f);
-  }
-}
-
-TEST(RglWarp, an_empty_slice_is_uniform) {
-  const WarpGrid grid(4, 3, std::vector<float>(12, 0.0f));
-  EXPECT_TRUE(grid.is_empty(0));
-  EXPECT_NEAR(grid.density({}, {0.3f, 0.9f}), 1, 1e-6f);
-  EXPECT_NEAR(grid.sample({}, {0.3f, 0.9f}).x, 0.3f, 1e-6f);
 }
 
 // ---- values ----------------------------------------------------------------------------------------------
@@ -223,11 +124,11 @@ TEST(Rgl, stored_quarters_and_halves_are_mirrored) {
 }
 
 TEST(Rgl, agrees_with_mitsuba) {
-  if (real_files().empty()) GTEST_SKIP() << "set ZONAL_DATA to the folder that has materials/rgl";
+  if (published_rgl_files().empty()) GTEST_SKIP() << kNoPublishedFiles;
   const auto golden =
       nlohmann::json::parse(std::ifstream(test::source_dir() + "/tests/golden/rgl_mitsuba.json"));
   std::map<std::string, std::unique_ptr<RglBrdf>> brdfs;
-  for (const std::string& file : real_files())
+  for (const std::string& file : published_rgl_files())
     brdfs[std::filesystem::path(file).filename().string()] = std::make_unique<RglBrdf>(TensorFile(file));
   const auto vec = [](const nlohmann::json& a) {
     return vec3(a[0].get<float>(), a[1].get<float>(), a[2].get<float>());
@@ -389,7 +290,7 @@ TEST(Rgl, the_largest_cosine_divided_by_costs_little_light) {
   // docs/materials.md gives at most 0.34 % of any direction's light. What is lost lies within half a degree
   // of the horizon: there the data times cos(89.5 degrees), less what is reflected now.
   const double limit = 89.5 * kPiDouble / 180, step = (kPiDouble / 2 - limit) / 8;
-  if (real_files().empty()) GTEST_SKIP() << "set ZONAL_DATA to the folder that has materials/rgl";
+  if (published_rgl_files().empty()) GTEST_SKIP() << kNoPublishedFiles;
   for (const Sample& sample : everything()) {
     if (sample.brdf->description == "Analytic GGX")
       continue;  // steeper towards the horizon than what was measured

@@ -4,14 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <numeric>
-
 #include "bsdf_cases.h"
 #include "bsdf_quadrature.h"
+#include "dense_projection.h"
 #include "materials/measured_brdf.h"
 #include "materials/sh_projector_quadrature.h"
+#include "measured_files.h"
 #include "sh/basis.h"
 #include "sh/hemispherical.h"
 #include "sh/quadrature.h"
@@ -19,7 +17,7 @@
 namespace zonal {
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
+using test::kPiD;
 
 vec3 out_direction(double theta) {
   return vec3(float(std::sin(theta)), 0, float(std::cos(theta)));
@@ -81,26 +79,6 @@ Direct project_directly(const Bsdf& bsdf, double theta, int bands) {
   return direct;
 }
 
-/// Largest difference of two functions given by coefficients (one channel), as a share of the second one's
-/// peak.
-double difference(int bands, bool mirrored, const float* row, const std::vector<double>& truth) {
-  std::vector<double> error = truth;
-  for (int l = 0; l < bands; ++l)
-    for (int m = mirrored ? 0 : -l; m <= l; ++m)
-      error[size_t(sh::index(l, m))] -= row[sh_index(l, m, mirrored)];
-  double worst = 0, peak = 0;
-  std::vector<double> Y(size_t(sh::count(bands)));
-  for (int i = 0; i < 60; ++i)
-    for (int j = 0; j < 60; ++j) {
-      const double t = (i + 0.5) * kPiD / 60, p = (j + 0.5) * kPiD / 30;
-      sh::evaluate(bands, glm::dvec3(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)),
-                   Y.data());
-      worst = std::max(worst, std::abs(std::inner_product(Y.begin(), Y.end(), error.begin(), 0.0)));
-      peak = std::max(peak, std::abs(std::inner_product(Y.begin(), Y.end(), truth.begin(), 0.0)));
-    }
-  return worst / peak;
-}
-
 // Tables at the tabulated elevations against double-precision projection on a grid refined at the mirror
 // direction: issue's bar of 1e-4 of the peak at 20 bands, F' exactly and F too; energies to 1 %.
 TEST(ProjectorAccuracy, agrees_with_direct_projection_and_another_quadratures_energy) {
@@ -115,8 +93,8 @@ TEST(ProjectorAccuracy, agrees_with_direct_projection_and_another_quadratures_en
       for (int table = 0; table < 2; ++table) {
         const ShRow& row = p.rows[table][size_t(elevation)];
         for (int channel = 0; channel < 3; channel += 2)
-          EXPECT_LT(difference(kBands, true, row.coefficients.data() + channel * sh_count(kBands, true),
-                               direct.c[table][channel]),
+          EXPECT_LT(test::difference(kBands, true, row.coefficients.data() + channel * sh_count(kBands, true),
+                                     direct.c[table][channel]),
                     1e-4)
               << c.name << " " << elevation << " table " << table;
         EXPECT_NEAR(row.energy / direct.energy[table], 1, 0.01)
@@ -126,52 +104,29 @@ TEST(ProjectorAccuracy, agrees_with_direct_projection_and_another_quadratures_en
   }
 }
 
-// The same for measured files, whose interpolants have kinks everywhere: midpoints a tenth of a degree apart,
-// 0.2 in azimuth.
+// The same for measured files, all channels: the bar holds for the worst of them, and grazing is the hardest.
+// Nodes are those of project_material at 20 bands. The grid's own error is 6e-5 at worst (half as many steps
+// as bench_materials takes, one file at 89.5 degrees) and mostly below 1e-5.
 TEST(ProjectorAccuracy, measured_files_agree_with_a_dense_grid) {
-  const char* data = std::getenv("ZONAL_DATA");
-  const std::string folder = data ? std::string(data) + "/materials/rgl/" : "";
-  if (!data || !std::filesystem::exists(folder)) GTEST_SKIP() << "ZONAL_DATA has no materials/rgl";
-  constexpr int kBands = 20, kThetas = 900, kPhis = 900;
-  std::vector<double> cosines(size_t(kPhis) * kBands), X(size_t(sh::legendre_count(kBands)));
-  for (int j = 0; j < kPhis; ++j)
-    for (int m = 0; m < kBands; ++m) cosines[size_t(j * kBands + m)] = std::cos(m * kPiD * (j + 0.5) / kPhis);
-  for (const char* name : {"paper_white", "cc_nothern_aurora"}) {
-    const std::unique_ptr<MeasuredBrdf> brdf = load_measured(folder + name + "_rgb.bsdf");
+  const std::vector<std::string> files = test::published_rgl_files();
+  if (files.empty()) GTEST_SKIP() << test::kNoPublishedFiles;
+  constexpr int kBands = 20, kCount = sh_count(kBands + 1, true);
+  for (const std::string& file : files) {
+    const std::unique_ptr<MeasuredBrdf> brdf = load_measured(file);
     const Bsdf b{.kind = BsdfKind::measured, .measured = brdf.get()};
-    for (const double theta : {0.35, 1.05}) {
+    for (const int elevation : {0, 80, 90}) {
+      const double theta = ShMaterial::degrees(elevation) * kPiD / 180;
       const HemisphereNodes nodes = hemisphere_nodes(b, 0, theta, {.half = true, .average = true});
-      std::vector<double> f(3 * size_t(sh_count(kBands + 1, true))), fc(size_t(sh_count(kBands, true)));
+      std::vector<double> f(3 * size_t(kCount)), fc(size_t(sh_count(kBands, true)));
       project_nodes(nodes, kBands + 1, true, ShBasis::spherical, f.data());
-      times_cosine(kBands, true, ShBasis::spherical, f.data() + sh_count(kBands + 1, true), fc.data());
-
-      std::vector<double> truth(size_t(sh::count(kBands)));
-      std::vector<vec3> w(2 * kPhis), values(2 * kPhis);
-      double energy = 0;
-      for (int i = 0; i < kThetas; ++i) {
-        const double t = (i + 0.5) * kPiD / 2 / kThetas, s = std::sin(t), z = std::cos(t);
-        const double weight = s * kPiD / 2 / kThetas * kPiD / kPhis;  // of both sides together: twice, halved
-        for (int j = 0; j < 2 * kPhis; ++j) {
-          const double phi = (j + 0.5) * kPiD / kPhis;
-          w[size_t(j)] = vec3(float(s * std::cos(phi)), float(s * std::sin(phi)), float(z));
-        }
-        brdf->evaluate(out_direction(theta), 2 * kPhis, w.data(), values.data());
-        double sums[kBands] = {};
-        for (int j = 0; j < kPhis; ++j) {
-          const vec3 here = values[size_t(j)], there = values[size_t(2 * kPhis - 1 - j)];
-          energy += weight * z * z * double(glm::dot(here, here) + glm::dot(there, there));
-          for (int m = 0; m < kBands; ++m)
-            sums[m] += weight * z * cosines[size_t(j * kBands + m)] * (double(here.y) + there.y);
-        }
-        sh::normalized_legendre(kBands, z, s, X.data());
-        for (int m = 0; m < kBands; ++m)
-          for (int l = m; l < kBands; ++l)
-            truth[size_t(sh::index(l, m))] +=
-                (m > 0 ? std::sqrt(2.0) : 1) * X[size_t(sh::legendre_index(kBands, l, m))] * sums[m];
+      const test::DenseProjection dense = test::dense_projection(*brdf, theta, kBands, 1000);
+      for (int c = 0; c < 3; ++c) {
+        times_cosine(kBands, true, ShBasis::spherical, f.data() + c * kCount, fc.data());
+        const std::vector<float> row(fc.begin(), fc.end());
+        EXPECT_LT(test::difference(kBands, true, row.data(), dense.c[c]), 1e-4)
+            << file << " " << elevation << " " << c;
       }
-      const std::vector<float> row(fc.begin(), fc.end());
-      EXPECT_LT(difference(kBands, true, row.data(), truth), 1e-4) << name << " " << theta;
-      EXPECT_NEAR(nodes.energy_cosine / energy, 1, 0.01) << name << " " << theta;
+      EXPECT_NEAR(nodes.energy_cosine / dense.energy_cosine, 1, 0.01) << file << " " << elevation;
     }
   }
 }
@@ -196,7 +151,7 @@ TEST(ProjectorAccuracy, anisotropic_rows_agree_with_direct_projection) {
     for (size_t i = 0; i < Y.size(); ++i) truth[i] += value * Y[i];
   });
   std::vector<float> row(f.begin() + sh::count(kBands), f.begin() + 2 * sh::count(kBands));
-  EXPECT_LT(difference(kBands, false, row.data(), truth), 1e-4);
+  EXPECT_LT(test::difference(kBands, false, row.data(), truth), 1e-4);
   EXPECT_GT(std::abs(truth[size_t(sh::index(2, -1))]), 1e-3);  // both halves matter
 }
 
