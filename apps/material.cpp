@@ -39,15 +39,19 @@ int project_file(const Options& options) {
                     .string() +
                 ".shmat"
           : options.output;
+  if (fs::path(output).extension() != ".shmat")
+    throw SceneError(
+        output + ": expected a file whose name ends in .shmat (a folder is what a folder is projected to)");
   check_can_write(output);
   const MaterialSource source = read_material_source(options.source);
   catch_interrupts();
   ProgressPrinter progress("projecting " + source.name, options.quiet);
   const auto start = Clock::now();
   const Stop stop(&stop_asked(), Clock::time_point::max());
-  ShProjection projection = project_material(
-      source.bsdf, options.folder.projection, stop,
-      [&](double fraction) { progress.update({.fraction = fraction, .seconds = seconds_since(start)}); });
+  ShProjection projection =
+      project_material(source.bsdf, options.folder.projection, stop, [&](double fraction) {
+        progress.update({.pass = -1, .fraction = fraction, .seconds = seconds_since(start)});
+      });
   progress.finish();
   if (projection.empty()) {
     fmt::print(stderr, "interrupted: nothing written\n");
@@ -69,13 +73,14 @@ int project_all(const Options& options) {
   const FolderReport report =
       project_folder(options.source, database, options.folder, Stop(&stop_asked(), Clock::time_point::max()),
                      [&](const std::string&, double fraction) {
-                       progress.update({.fraction = fraction, .seconds = seconds_since(start)});
+                       progress.update({.pass = -1, .fraction = fraction, .seconds = seconds_since(start)});
                      });
   progress.finish();
   for (const std::string& failure : report.failed) fmt::print(stderr, "zonal: {}\n", failure);
   if (!options.quiet) {
-    for (const DatabaseEntry& entry : MaterialDatabase::open(database).entries())
-      print_projection(entry.name, entry, 0);
+    if (report.projected + report.kept > 0)
+      for (const DatabaseEntry& entry : MaterialDatabase::open(database).entries())
+        print_projection(entry.name, entry, 0);
     fmt::print("{}: {} projected, {} kept, {} failed in {:.1f} s\n", database, report.projected, report.kept,
                report.failed.size(), seconds_since(start));
   }
@@ -104,7 +109,7 @@ void add_material(CLI::App& app, int* exit_code) {
   project->add_option("--most-bands", p.most_bands, "of a row, with --share")->check(CLI::Range(1, 100));
   project
       ->add_option("--azimuths", p.azimuths, "rows around the normal; 0: 1 for isotropic materials, else 90")
-      ->check(CLI::Range(0, 1440));
+      ->check(CLI::Range(0, 360));
   project->add_option("--window", p.window, "none, hann, lanczos, hamming or auto")
       ->check(CLI::IsMember({"none", "hann", "lanczos", "hamming", "auto"}));
   project->add_option("--window-size", p.window_size, "bands; 0: the row's")

@@ -117,7 +117,7 @@ void draw_sphere(Canvas& canvas, vec2 corner, const std::function<vec3(vec3 w_ou
     }
 }
 
-/// F' in the plane of w_out, exact (grey) and by the table (orange), radius on a square-root scale.
+/// F' in the plane of w_out, exact (blue) and by the table (orange), radius on a square-root scale.
 void draw_lobe(Canvas& canvas, vec2 corner, const Bsdf& bsdf, const ShMaterial& material, float degrees) {
   const float theta = degrees * kPiF / 180;
   const vec3 w_out(std::sin(theta), 0, std::cos(theta));
@@ -177,6 +177,35 @@ void draw_energy(Canvas& canvas, vec2 corner, float width, const Bsdf& bsdf) {
   }
 }
 
+/// Rows of F' that met the limit before the share they should hold, as ranges of elevations.
+void print_cut(const ShMaterial& material) {
+  const auto is_cut = [&](int k) {
+    return k < ShMaterial::kElevations &&
+           material.row_bands(ShTable::brdf_cosine, 0, k) == material.max_bands() &&
+           material.row_share(ShTable::brdf_cosine, 0, k) < 0.9495f;
+  };
+  // One number where both ends read the same.
+  const auto range = [](const std::string& low, const std::string& high) {
+    return low == high ? low : low + " to " + high;
+  };
+  std::string cut;
+  for (int k = 0; k < ShMaterial::kElevations; ++k) {
+    if (!is_cut(k)) continue;
+    const int first = k;
+    float low = 1, high = 0;
+    for (; is_cut(k); ++k) {
+      low = std::min(low, material.row_share(ShTable::brdf_cosine, 0, k));
+      high = std::max(high, material.row_share(ShTable::brdf_cosine, 0, k));
+    }
+    cut += fmt::format("{} {} deg ({} %)", cut.empty() ? "" : ",",
+                       range(fmt::format("{:g}", ShMaterial::degrees(first)),
+                             fmt::format("{:g}", ShMaterial::degrees(k - 1))),
+                       range(fmt::format("{:.0f}", 100 * low), fmt::format("{:.0f}", 100 * high)));
+  }
+  if (!cut.empty())
+    fmt::print("    less than 95 % of the energy in {} bands:{}\n", material.max_bands(), cut);
+}
+
 void print_rows(const ShMaterial& material) {
   for (const auto& [table, name] : {std::pair(ShTable::brdf, "F "), std::pair(ShTable::brdf_cosine, "F'")}) {
     fmt::print("{}: bands at 0, 10, ... 80, 89.5 deg:", name);
@@ -188,25 +217,7 @@ void print_rows(const ShMaterial& material) {
     fmt::print(
         "; largest L2 error {:.1f} %{}\n", 100 * std::sqrt(std::max(0.0f, 1 - worst)),
         table == ShTable::brdf ? " (automatic tables give F the bands of F': a cosine weights it)" : "");
-    // Rows that met the limit before the share they should hold, as ranges of elevations.
-    std::string cut;
-    const auto is_cut = [&](int k) {
-      return k < ShMaterial::kElevations && material.row_bands(table, 0, k) == material.max_bands() &&
-             material.row_share(table, 0, k) < 0.9495f;
-    };
-    for (int k = 0; k < ShMaterial::kElevations; ++k) {
-      if (!is_cut(k)) continue;
-      const int first = k;
-      float low = 1, high = 0;
-      for (; is_cut(k); ++k) {
-        low = std::min(low, material.row_share(table, 0, k));
-        high = std::max(high, material.row_share(table, 0, k));
-      }
-      cut += fmt::format("{} {:g} to {:g} deg ({:.0f} to {:.0f} %)", cut.empty() ? "" : ",",
-                         ShMaterial::degrees(first), ShMaterial::degrees(k - 1), 100 * low, 100 * high);
-    }
-    if (!cut.empty())
-      fmt::print("    less than 95 % of the energy in {} bands:{}\n", material.max_bands(), cut);
+    if (table == ShTable::brdf_cosine) print_cut(material);
   }
 }
 
@@ -245,6 +256,9 @@ int show_command(const Options& options) {
     for (const std::string& note : source->brdf->notes) fmt::print("{}\n", note);
   }
   print_rows(material);
+  if (!source)
+    fmt::print("{} is neither beside the projection nor where a database says: the exact half is left out\n",
+               material.source());
 
   const int width = source ? 4 * kPlot + 2 * kMargin : kSphere + 2 * kMargin;
   Canvas canvas(width, source ? 580 : kSphere + 90);

@@ -21,7 +21,7 @@
 namespace zonal {
 namespace {
 
-constexpr int kChecked[] = {0, 1, 3, 6, 9, 10, 15, 25, 40, 60, 75, 80, 84, 85, 87, 89, 90};  ///< elevations
+constexpr int kChecked[] = {0, 1, 4, 8, 13, 14, 17, 25, 40, 55, 65, 75, 80, 84, 85, 88, 90};  ///< elevations
 
 double median_seconds(const auto& work) {
   std::vector<double> seconds;

@@ -21,8 +21,9 @@ std::string duration_text(double seconds) {
 
 std::string progress_text(const std::string& label, const Progress& progress) {
   const double done = std::clamp(progress.fraction, 0.0, 1.0);
-  std::string text = fmt::format("{}: pass {}, {} %, {} gone", label, progress.pass + 1,
-                                 static_cast<int>(100 * done), duration_text(progress.seconds));
+  std::string text = label + ": ";
+  if (progress.pass >= 0) text += fmt::format("pass {}, ", progress.pass + 1);
+  text += fmt::format("{} %, {} gone", static_cast<int>(100 * done), duration_text(progress.seconds));
   if (done >= 0.01) text += fmt::format(", {} left", duration_text(progress.seconds * (1 - done) / done));
   return text;
 }

@@ -17,7 +17,7 @@ namespace zonal {
 std::string duration_text(double seconds);
 
 /// "cornell path: pass 12, 34 %, 8 s gone, 15 s left". The time left is the time gone scaled by what is left
-/// to do; it is not told before a hundredth is done.
+/// to do; it is not told before a hundredth is done. A negative pass is left out: work that has none.
 std::string progress_text(const std::string& label, const Progress& progress);
 
 /// Not to be called from two threads at once; `render` sees to that.

@@ -20,7 +20,7 @@ constexpr double kPhase = 3;
 
 /// Near the normal the kinks of the data in all azimuths cross the highlight, near grazing the horizon cuts
 /// it: rows below and above get so many times more nodes, for errors like those of the others.
-constexpr double kHardBelow = 9.5 * pi / 180, kHardAbove = 84.5 * pi / 180, kHardNodes = 2.5;
+constexpr double kHardBelow = 13.5 * pi / 180, kHardAbove = 84.5 * pi / 180, kHardNodes = 2.2;
 
 struct Direction {
   double x, y, z;

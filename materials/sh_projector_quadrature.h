@@ -24,8 +24,8 @@ struct HemisphereOptions {
   bool hemispherical = false;  ///< the nodes are meant for ShBasis::hemispherical too
   int resolve_bands = 32;      ///< the nodes resolve at least this many bands everywhere
   double tolerance = 5e-7;     ///< of one cell, as a share of the integral of F'
-  int most_nodes = 90000;  ///< the search for better cells ends here; 2.5 times as many near the normal and
-                           ///< near grazing, twice as many where not `half`
+  int most_nodes = 105000;  ///< the search for better cells ends here; 2.2 times as many near the normal and
+                            ///< near grazing, twice as many where not `half`
 };
 
 /// Directions are in the view frame of sh_material.h.

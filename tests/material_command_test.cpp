@@ -186,6 +186,13 @@ TEST_F(MaterialCommand, one_broken_file_does_not_keep_the_others_out) {
   EXPECT_EQ(MaterialDatabase::open(folder_ + "/db").entries().size(), 1u);
 }
 
+TEST_F(MaterialCommand, a_folder_of_broken_files_alone_is_answered_file_by_file) {
+  write("in/broken.bsdf", "tensor_file");
+  EXPECT_EQ(run({"material", "project", folder_ + "/in", "-o", folder_ + "/db"}), 2);
+  EXPECT_NE(said_.find("broken.bsdf"), std::string::npos) << said_;
+  EXPECT_EQ(said_.find("index.json"), std::string::npos) << said_;
+}
+
 TEST_F(MaterialCommand, mistakes_are_told_in_one_line) {
   fs::create_directories(folder_ + "/empty");
   EXPECT_EQ(run({"material", "project", folder_ + "/empty"}), 2);
@@ -202,6 +209,8 @@ TEST_F(MaterialCommand, mistakes_are_told_in_one_line) {
             0)
       << said_;
   EXPECT_EQ(run({"material", "project", file, "--bands", "101"}), 2);
+  EXPECT_EQ(run({"material", "project", file, "-o", folder_ + "/x.png"}), 2);
+  EXPECT_NE(said_.find(".shmat"), std::string::npos) << said_;
   const std::string name = MaterialDatabase::open(folder_ + "/db").names().at(0);
   EXPECT_EQ(run({"render", scene_of(name.substr(0, name.size() - 1)), "--passes", "1", "-o", "none"}), 2);
   EXPECT_NE(said_.find(name), std::string::npos) << said_;  // the nearest name

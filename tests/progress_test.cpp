@@ -18,6 +18,8 @@ TEST(Progress, time_left_is_proportional_to_what_is_left) {
   EXPECT_EQ(progress_text("box", {.pass = 2, .fraction = 0.25, .seconds = 10}),
             "box: pass 3, 25 %, 10 s gone, 30 s left");
   EXPECT_EQ(progress_text("box", {.pass = 0, .fraction = 0, .seconds = 10}), "box: pass 1, 0 %, 10 s gone");
+  EXPECT_EQ(progress_text("projecting", {.pass = -1, .fraction = 0.5, .seconds = 3}),
+            "projecting: 50 %, 3 s gone, 3 s left");
 }
 
 TEST(Progress, a_log_gets_no_line_before_its_time) {
