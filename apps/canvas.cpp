@@ -9,7 +9,7 @@ namespace zonal {
 namespace {
 
 /// Letters of 5 x 7 cells, one row after the other: '#' is ink. In the order of kLetters.
-constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.%'>:-/=";
+constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.%'>:-/=_";
 constexpr std::string_view kCells[] = {
     ".###.#...##...#######...##...##...#", "####.#...##...#####.#...##...#####.",
     ".#####....#....#....#....#.....####", "####.#...##...##...##...##...#####.",
@@ -33,6 +33,7 @@ constexpr std::string_view kCells[] = {
     "..#....#....#......................", "#.....#.....#.....#...#...#...#....",
     "......##...##........##...##.......", "...............#####...............",
     "....#....#...#...#...#...#....#....", "..........#####.....#####..........",
+    "..............................#####",
 };
 
 }  // namespace

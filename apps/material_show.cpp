@@ -214,9 +214,10 @@ void print_rows(const ShMaterial& material) {
       worst = std::min(worst, material.row_share(table, 0, k));
     for (const int k : {0, 10, 20, 30, 40, 50, 60, 70, 80, 90})
       fmt::print(" {}", material.row_bands(table, 0, k));
-    fmt::print(
-        "; largest L2 error {:.1f} %{}\n", 100 * std::sqrt(std::max(0.0f, 1 - worst)),
-        table == ShTable::brdf ? " (automatic tables give F the bands of F': a cosine weights it)" : "");
+    fmt::print("; largest L2 error {:.1f} %{}\n", 100 * std::sqrt(std::max(0.0f, 1 - worst)),
+               table == ShTable::brdf
+                   ? " (before the cosine that weights it; automatic tables keep the bands of F')"
+                   : "");
     if (table == ShTable::brdf_cosine) print_cut(material);
   }
 }
