@@ -1,8 +1,8 @@
 // Reads a .shmat file from an array of 32-bit words, as it lies in a GPU buffer: the shader's side of
 // ShMaterial::look_up. docs/shmat.md has the layout.
 //
-// Needs sh/angle.glsl before it. Who includes this defines SHMAT_WORD(i), the i-th word of the buffer. Files may lie one after the other: `base` is the
-// word where one starts.
+// Needs sh/angle.glsl before it. Who includes this defines SHMAT_WORD(i), the i-th word of the buffer. Files may lie one
+// after the other: `base` is the word where one starts.
 //
 //     ShmatTable table = shmat_open(base);
 //     ShmatPlace place = shmat_find(table, 1, w_out);                          // 0: F, 1: F'

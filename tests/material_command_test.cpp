@@ -82,7 +82,7 @@ void expect_gpu_layout(const ShMaterial& m) {
       for (int k = m.mirrored() ? 0 : -l; k <= l; ++k)
         for (int c = 0; c < 3; ++c) {
           const float value = expected[c * count + sh_index(l, k, m.mirrored())];
-          // Both interpolate between rows in float; an elevation rounds to 4e-6 degrees, and rows a degree
+          // Both interpolate between rows in float; elevations differ by 2e-5 degrees, and rows a degree
           // apart differ by no more than their own size.
           ASSERT_NEAR(gpu::shmat_coefficient(table, place, gpu::shmat_index(table, l, k))[c], value,
                       1e-4 * std::max(1.0f, std::fabs(value)));
