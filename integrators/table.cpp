@@ -6,6 +6,7 @@
 #include "integrators/debug/debug.h"
 #include "integrators/hvl/hvl.h"
 #include "integrators/path/path.h"
+#include "integrators/sh_direct/sh_direct.h"
 #include "integrators/vpl/vpl.h"
 #include "integrators/vsgl/vsgl.h"
 #include "integrators/vsl/vsl.h"
@@ -42,6 +43,9 @@ const std::array kTable = {
     IntegratorRow{"vsgl", "virtual spherical Gaussian lights, two for each block of the map",
                   "direct and `bounces` bounces, `occlusion` as set", false, list_params<VsglParams>,
                   make<VsglParams, VsglIntegrator>},
+    IntegratorRow{"sh_direct", "direct light of many area lights on spherical harmonics, without noise",
+                  "direct, `occlusion` as set", false, list_params<ShDirectParams>,
+                  make<ShDirectParams, ShDirectIntegrator>},
     IntegratorRow{"normal", "shading normals as colours", "none", true, list_params<DebugParams>,
                   make_debug<DebugQuantity::normal>},
     IntegratorRow{"albedo", "surface albedo", "none", true, list_params<DebugParams>, make_debug<DebugQuantity::albedo>},

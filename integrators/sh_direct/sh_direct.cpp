@@ -1,0 +1,186 @@
+#include "integrators/sh_direct/sh_direct.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/error.h"
+#include "integrators/sh_direct/sh_occlusion.h"
+
+namespace zonal {
+
+void ShDirectParams::visit(ParamVisitor& v) {
+  v.choice("at", at, {"pixel", "grid"},
+           "where the lights are projected; grid: between its points they are interpolated");
+  v.choice(
+      "occlusion", occlusion, {"none", "ambient", "ratio"},
+      "what blocks light: nothing; what is near, from all sides alike; everything, by rays to the lights");
+  v.integer("rays", rays, {1, 1e6}, "rays", "of ambient and ratio, a pixel, pass and group of lights");
+  v.integer("groups", groups, {1, 1024}, "groups",
+            "of neighbouring lights, each with rays of its own (ratio)");
+  v.number("reach", reach, {0, 1e9}, "m", "of ambient; 0: a tenth of the scene's radius");
+  ShReceiverParams::visit(v);
+  v.choice("polygons", polygons, {"exact", "main", "alternative", "compromise_radius", "compromise_angle"},
+           "triangles of area lights: integrated, or spheres in their place (Eq. 4.9, 4.14, 4.17)");
+  v.number("split_error", split_error, {0, 1}, "",
+           "spheres for triangles: cut until their coefficients are off by less; 0: one sphere a triangle");
+  v.number("split_distance", split_distance, {.low = 0, .high = 1e9, .open_low = true}, "m",
+           "from which split_error is judged");
+  v.number("tolerance", tolerance, {.low = 0, .high = 1, .open_low = true}, "",
+           "exact triangles: relative error allowed; those so far that one direction stays below are one");
+  v.integer_or_auto("grid", grid, {2, 1e6}, "points",
+                    "along the longest side of the box around what is seen; auto: by grid_error");
+  v.number("grid_error", grid_error, {.low = 0, .high = 1, .open_low = true}, "",
+           "wanted of grid auto: RMSE against at pixel over the mean");
+  v.choice("interpolation", scheme.interpolation, {"hermite", "taylor", "linear"},
+           "between the grid's points");
+  v.choice(
+      "mixed", scheme.mixed, {"differences", "hessian", "zero"},
+      "where hermite has mixed derivatives from: gradients next to each other, the lights' Hessian, nowhere");
+  v.choice("spheres", spheres, {"sphere", "disk"},
+           "sphere lights as they are, or as disks that face the point");
+}
+
+void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& stats) {
+  if (scene.lights().empty())
+    throw SceneError(where_ +
+                     ": found a scene without lights, expected at least one: there is nothing to project");
+  scene_ = &scene;
+  const auto start = std::chrono::steady_clock::now();
+  receiver_ = ShReceiver(params_, scene.materials(), stop);
+  ShLightOptions options;
+  options.bands = receiver_.most_light_bands();
+  options.polygons = params_.polygons;
+  options.split_error = params_.split_error, options.split_distance = params_.split_distance;
+  options.tolerance = params_.tolerance;
+  options.shape =
+      params_.spheres == ShDirectParams::Spheres::disk ? sh::LightShape::disk : sh::LightShape::sphere;
+  const bool ratio = params_.occlusion == ShDirectParams::Occlusion::ratio;
+  groups_.clear();
+  lights_ = 0;
+  for (const auto& lights : light_groups(scene.lights(), ratio ? params_.groups : 1)) {
+    groups_.push_back({ShLights(lights, options), {}, ratio ? LightSelector(lights) : LightSelector()});
+    lights_ += groups_.back().lights.count();
+  }
+  refuse_too_large_a_grid();
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  stats.numbers["projection_seconds"] = spent.count();
+  stats.numbers["projected_lights"] = lights_;
+  stats.numbers["light_bands"] = receiver_.most_light_bands();
+}
+
+void ShDirectIntegrator::refuse_too_large_a_grid() const {
+  if (params_.at != ShDirectParams::At::grid || params_.grid == kAuto) return;
+  const double bytes = ShGrid::bytes(params_.grid, params_.scheme, receiver_.most_light_bands());
+  const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
+  if (bytes > memory)
+    throw SceneError(
+        fmt::format("{}: /grid: found {}, whose points would take up to {:.3g} bytes, expected at most the "
+                    "{:.3g} bytes of this machine's memory",
+                    where_, params_.grid, bytes, memory));
+}
+
+void ShDirectIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStats& stats) {
+  if (scene_ != &pass.scene) load(pass.scene, stop, stats);
+  if (params_.at == ShDirectParams::At::pixel) return;
+  const ShSeen seen = look_around(pass.scene, pass.camera, stop);
+  if (params_.grid != kAuto) chosen_ = params_.grid;
+  if (chosen_ == 0) choose_grid(seen, stop, stats);
+  build_grids(seen, seen.positions, chosen_, stop);
+  stats.numbers["grid"] = chosen_;
+  stats.numbers["grid_points"] = groups_[0].grid.built_points();
+}
+
+/// Cells are cubes, or nearly: the shorter sides have as many points as keep them so.
+void ShDirectIntegrator::build_grids(const ShSeen& seen, std::span<const vec3> wanted, int points_a_side,
+                                     const Stop& stop) {
+  const Box box = Box::around(seen.positions);
+  const vec3 extent = box.high - box.low;
+  const float cell = max_component(extent) / float(points_a_side - 1);
+  const ivec3 points = glm::max(ivec3(glm::ceil(extent / cell - 1e-3f)) + 1, 2);
+  for (Group& group : groups_) {
+    group.grid = ShGrid(box, points, params_.scheme, receiver_.most_light_bands());
+    group.grid.need(wanted);
+    group.grid.build(group.lights, stop);
+  }
+}
+
+/// The coarsest grid of a series that meets `grid_error` at points spread over the picture.
+void ShDirectIntegrator::choose_grid(const ShSeen& seen, const Stop& stop, PassStats& stats) {
+  std::vector<vec3> exact, places;
+  const auto of_all = [&](const ShSeen::Probe& p, bool from_grid) {
+    vec3 sum(0);
+    for (const Group& group : groups_) sum += reflected(group, p.surface, p.bsdf, from_grid);
+    return sum;
+  };
+  double mean = 0, error = 0;
+  for (const ShSeen::Probe& p : seen.probes) {
+    exact.push_back(of_all(p, false)), places.push_back(p.surface.position);
+    mean += exact.back().x + exact.back().y + exact.back().z;
+  }
+  for (chosen_ = 4; !stop(); chosen_ = chosen_ * 4 / 3 + 1) {
+    build_grids(seen, places, chosen_, stop);
+    double squares = 0;
+    for (size_t i = 0; i < exact.size(); ++i) {
+      const vec3 off = of_all(seen.probes[i], true) - exact[i];
+      squares += glm::dot(off, off);
+    }
+    error = mean > 0 ? std::sqrt(squares * 3 * double(exact.size())) / mean : 0;
+    // A grid with more points than there are pixels is no help.
+    if (error <= params_.grid_error || chosen_ > 192) break;
+  }
+  stats.numbers["grid_error_measured"] = error;
+  if (error > params_.grid_error)
+    stats.warnings.push_back(
+        fmt::format("grid: {} points a side leave an error of {:.2g}; \"at\": \"pixel\" is for this scene",
+                    chosen_, error));
+}
+
+vec3 ShDirectIntegrator::reflected(const Group& group, const Surface& s, const Bsdf& bsdf,
+                                   bool from_grid) const {
+  const int bands = receiver_.light_bands(s, bsdf);
+  float L[3 * kMostShBands * kMostShBands];
+  if (!from_grid || !group.grid.interpolate(s.position, bands, L))
+    group.lights.coefficients(bands, s.position, L);
+  return receiver_.shade(s, bsdf, bands, L);
+}
+
+vec3 ShDirectIntegrator::reflected(const Surface& s, const Bsdf& bsdf, Sampler& sampler,
+                                   TileStats& stats) const {
+  using Occlusion = ShDirectParams::Occlusion;
+  vec3 sum(0);
+  for (const Group& group : groups_) {
+    vec3 some = reflected(group, s, bsdf, params_.at == ShDirectParams::At::grid);
+    if (params_.occlusion == Occlusion::ratio)
+      some *= shadow_ratio(*scene_, group.selector, s, bsdf, params_.rays, sampler, stats);
+    sum += some;
+  }
+  if (params_.occlusion == Occlusion::ambient) {
+    const float reach = params_.reach > 0 ? params_.reach : 0.1f * scene_->bounds().radius;
+    sum *= ambient_openness(*scene_, s, params_.rays, reach, sampler, stats);
+  }
+  return sum;
+}
+
+void ShDirectIntegrator::shade(const Tile& tile, vec3* radiance, Sampler* samplers, const Stop& stop,
+                               TileStats& stats) const {
+  const Light* sky = scene_->environment();
+  for (int i = 0; i < tile.count; ++i) {
+    if (stop()) return;
+    if (!tile.found(i)) {
+      radiance[i] = sky ? sky->radiance({.normal = tile.directions[i]}, -tile.directions[i]) : vec3(0);
+      continue;
+    }
+    const Surface& s = tile.surfaces[i];
+    radiance[i] = scene_->emitted(s);
+    if (tile.bsdfs[i].kind == BsdfKind::black) continue;
+    const vec3 sum = reflected(s, tile.bsdfs[i], samplers[i], stats);
+    stats.light_evaluations += static_cast<uint64_t>(lights_);
+    // Bands ring below zero; next to a light without size the sum may leave float's range.
+    for (int c = 0; c < 3; ++c) radiance[i][c] += std::isfinite(sum[c]) ? std::max(sum[c], 0.0f) : 0.0f;
+  }
+}
+
+}  // namespace zonal

@@ -1,0 +1,144 @@
+#include "lights/sh_lights.h"
+
+#include <algorithm>
+
+#include "sh/light_batch_hessian.h"
+#include "sh/simple_light_batch.h"
+
+namespace zonal {
+
+void ShLights::Arrays::add(vec3 position, vec3 value) {
+  x.push_back(position.x), y.push_back(position.y), z.push_back(position.z);
+  for (int c = 0; c < 3; ++c) colour[c].push_back(value[c]);
+}
+
+sh::LightArrays<float> ShLights::Arrays::caps() const {
+  return {count(),  x.data(),      y.data(),
+          z.data(), radius.data(), {colour[0].data(), colour[1].data(), colour[2].data()}};
+}
+
+namespace {
+
+std::vector<const Light*> pointers(const std::vector<std::unique_ptr<Light>>& lights) {
+  std::vector<const Light*> result;
+  for (const auto& light : lights) result.push_back(light.get());
+  return result;
+}
+
+}  // namespace
+
+ShLights::ShLights(const std::vector<std::unique_ptr<Light>>& lights, const ShLightOptions& options)
+    : ShLights(pointers(lights), options) {}
+
+ShLights::ShLights(const std::vector<const Light*>& lights, const ShLightOptions& options)
+    : options_(options), fixed_(3 * size_t(sh::count(options.bands))) {
+  for (const Light* light : lights) {
+    if (const auto* sphere = dynamic_cast<const SphereLight*>(light)) {
+      spheres_.add(sphere->center, sphere->emission);
+      spheres_.radius.push_back(sphere->radius);
+    } else if (const auto* mesh = dynamic_cast<const MeshLight*>(light)) {
+      add_mesh(*mesh);
+    } else if (const auto* point = dynamic_cast<const PointLight*>(light)) {
+      points_.add(point->position, point->intensity);
+    } else if (const auto* spot = dynamic_cast<const SpotLight*>(light)) {
+      spots_.add(spot->position, spot->intensity);
+      spots_.axis_x.push_back(spot->direction.x), spots_.axis_y.push_back(spot->direction.y);
+      spots_.axis_z.push_back(spot->direction.z);
+      const float inner = 1 - spot->cone.v_inner;
+      // A hard edge is a very steep one: a step has no gradient.
+      spots_.cos_inner.push_back(inner),
+          spots_.cos_outer.push_back(std::min(1 - spot->cone.v_outer, inner - 1e-6f));
+    } else if (const auto* sun = dynamic_cast<const DirectionalLight*>(light)) {
+      const sh::DiracArrays<float> one{1,
+                                       &sun->direction.x,
+                                       &sun->direction.y,
+                                       &sun->direction.z,
+                                       {&sun->irradiance.x, &sun->irradiance.y, &sun->irradiance.z}};
+      sh::accumulate_directional_lights(options_.bands, one, fixed_.data());
+    } else if (const auto* sky = dynamic_cast<const EnvironmentLight*>(light)) {
+      add_environment(*sky);
+    }
+  }
+}
+
+int ShLights::count() const {
+  return spheres_.count() + points_.count() + spots_.count() + exact_.count() + triangles_.spheres.count();
+}
+
+void ShLights::coefficients(int bands, vec3 x, float* L) const {
+  all(bands, x, L, nullptr);
+}
+
+void ShLights::gradient(int bands, vec3 x, float* L, float* gradient) const {
+  all(bands, x, L, gradient);
+}
+
+/// `gradient` may be null. `spheres`: with them.
+void ShLights::all(int bands, vec3 x, float* L, float* gradient, bool spheres) const {
+  const size_t n = sh::count(bands), fixed = sh::count(options_.bands);
+  for (int c = 0; c < 3; ++c) std::copy_n(fixed_.data() + c * fixed, n, L + c * n);
+  if (gradient) std::fill_n(gradient, 9 * n, 0.0f);
+  if (spheres && spheres_.count() > 0) {
+    if (gradient)
+      sh::accumulate_lights_gradient(bands, options_.shape, x, spheres_.caps(), L, gradient);
+    else
+      sh::accumulate_lights(bands, options_.shape, x, spheres_.caps(), L);
+  }
+  const auto diracs = [](const Arrays& a) {
+    return sh::DiracArrays<float>{a.count(),
+                                  a.x.data(),
+                                  a.y.data(),
+                                  a.z.data(),
+                                  {a.colour[0].data(), a.colour[1].data(), a.colour[2].data()},
+                                  nullptr,
+                                  a.axis_x.data(),
+                                  a.axis_y.data(),
+                                  a.axis_z.data(),
+                                  a.cos_inner.data(),
+                                  a.cos_outer.data()};
+  };
+  if (points_.count() > 0) sh::accumulate_point_lights(bands, x, diracs(points_), L, gradient);
+  if (spots_.count() > 0) sh::accumulate_spot_lights(bands, x, diracs(spots_), L, gradient);
+  if (exact_.count() > 0) exact_.accumulate(bands, x, options_.tolerance, L, gradient);
+  if (triangles_.spheres.count() == 0) return;
+  if (options_.polygons == ShLightOptions::Polygons::main)
+    triangles_as_spheres(bands, x, L, gradient);
+  else
+    triangles_one_by_one(bands, x, L, gradient);
+}
+
+void ShLights::mixed(int bands, vec3 x, float step, float* L, float* gradient, float* mixed) const {
+  const size_t n = sh::count(bands);
+  std::fill_n(mixed, 9 * n, 0.0f);
+  all(bands, x, L, gradient, false);
+  if (count() > spheres_.count()) {
+    // Each mixed derivative is had twice: the slope along one axis of the derivative for the other.
+    thread_local std::vector<float> ignored, slopes[2];
+    ignored.resize(3 * n), slopes[0].resize(9 * n), slopes[1].resize(9 * n);
+    for (int along = 0; along < 3; ++along) {
+      vec3 h(0);
+      h[along] = step;
+      all(bands, x + h, ignored.data(), slopes[0].data(), false);
+      all(bands, x - h, ignored.data(), slopes[1].data(), false);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (axis == along) continue;
+        const size_t k = axis + along - 1;  // xy, xz, yz
+        for (size_t c = 0; c < 3; ++c)
+          for (size_t i = 0; i < n; ++i) {
+            const size_t from = (c * 3 + axis) * n + i;
+            mixed[(c * 3 + k) * n + i] += (slopes[0][from] - slopes[1][from]) / (4 * step);
+          }
+      }
+    }
+  }
+  if (spheres_.count() == 0) return;
+  thread_local std::vector<float> hessian;
+  hessian.assign(18 * n, 0.0f);
+  sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(), L, gradient, hessian.data());
+  constexpr size_t kFrom[3] = {1, 2, 4};  // of xx, xy, xz, yy, yz, zz
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t k = 0; k < 3; ++k)
+      for (size_t i = 0; i < n; ++i) mixed[(c * 3 + k) * n + i] += hessian[(c * 6 + kFrom[k]) * n + i];
+}
+
+}  // namespace zonal

@@ -1,0 +1,86 @@
+#pragma once
+/// Every light of a scene on spherical harmonics: the coefficients of the light that arrives at a point from
+/// all of them, visibility left out, with their gradient as the point moves (Mézières 2022, Sec. 3
+/// and 4.2). Lights of a kind are kept as arrays and run several at once.
+///
+///     const ShLights lights(scene.lights(), {.bands = 5});
+///     float L[3 * 25];
+///     lights.coefficients(5, x, L);            // L[c * sh::count(5) + l(l+1)+m], colour c, world frame
+///
+/// Spheres are caps; triangles of quads, polygons and meshes are integrated exactly or stand for spheres;
+/// points and spots are Diracs; parallel light and the environment do not depend on the point and are
+/// projected once. Lights that shine on one side are black seen from the other; a sphere seen from inside is
+/// a hemisphere.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lights/light.h"
+#include "sh/light_batch.h"
+#include "sh/triangle_batch.h"
+#include "sh/triangle_spheres.h"
+
+namespace zonal {
+
+struct ShLightOptions {
+  enum class Polygons { exact, main, alternative, compromise_radius, compromise_angle };
+
+  int bands = 5;  ///< most bands that will be asked for: of the environment's projection
+  sh::LightShape shape = sh::LightShape::sphere;  ///< disk: spheres as disks that face the point (Eq. 3.29)
+  Polygons polygons = Polygons::exact;
+  /// Spheres for triangles: a triangle is cut in two until its spheres are off by less than this share, seen
+  /// from `split_distance` metres; 0: one sphere a triangle.
+  float split_error = 0, split_distance = 1;
+  /// Relative error allowed to an exact triangle by the bound of sh/triangle_batch.h: far ones are one
+  /// direction, near ones take more.
+  float tolerance = 1e-3f;
+};
+
+class ShLights {
+ public:
+  ShLights() = default;
+  explicit ShLights(const std::vector<std::unique_ptr<Light>>& lights, const ShLightOptions& options = {});
+  explicit ShLights(const std::vector<const Light*>& lights, const ShLightOptions& options = {});
+
+  /// Caps, triangles, points and spots: what is summed for a point.
+  int count() const;
+  /// Written, not added: L[c * sh::count(bands) + i].
+  void coefficients(int bands, vec3 x, float* L) const;
+  /// Also gradient[(c * 3 + axis) * sh::count(bands) + i], with respect to x.
+  void gradient(int bands, vec3 x, float* L, float* gradient) const;
+  /// Also mixed[(c * 3 + k) * sh::count(bands) + i], second derivatives xy, xz, yz: of spheres in closed
+  /// form, of all others by differences of gradients over `step` metres.
+  void mixed(int bands, vec3 x, float step, float* L, float* gradient, float* mixed) const;
+
+ private:
+  /// A structure of arrays; `radiance` of spheres and triangles, intensity of points and spots.
+  struct Arrays {
+    std::vector<float> x, y, z, radius, colour[3], axis_x, axis_y, axis_z, cos_inner, cos_outer;
+    int count() const { return static_cast<int>(x.size()); }
+    void add(vec3 position, vec3 value);
+    sh::LightArrays<float> caps() const;
+  };
+  /// Triangles as spheres (Sec. 4.2).
+  struct Triangles {
+    Arrays spheres;  ///< of equal area at the centroids; axis: the lit side's normal
+    std::vector<sh::TriangleSphere<float>> shapes;
+    std::vector<uint8_t> two_sided;
+  };
+
+  void add_mesh(const MeshLight&);
+  void add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth);
+  float split_error_of(const sh::TriangleSphere<float>&) const;
+  void add_environment(const EnvironmentLight&);
+  void all(int bands, vec3 x, float* L, float* gradient, bool spheres = true) const;
+  void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const;
+  void triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const;
+
+  ShLightOptions options_;
+  Arrays spheres_, points_, spots_;
+  sh::TriangleBatch<float> exact_;
+  Triangles triangles_;
+  std::vector<float> fixed_;  ///< [c * sh::count(options_.bands) + i]: parallel light and environment
+};
+
+}  // namespace zonal

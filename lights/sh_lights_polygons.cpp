@@ -1,0 +1,138 @@
+/// Triangles of area lights: exact, or as spheres (Mézières 2022, Sec. 4.2).
+
+#include <algorithm>
+
+#include "lights/sh_lights.h"
+#include "sh/polygon.h"
+
+namespace zonal {
+
+namespace {
+
+constexpr int kMostCuts = 12;  ///< of a triangle, one after another: 4096 spheres
+
+sh::TriangleMethod method_of(ShLightOptions::Polygons polygons) {
+  switch (polygons) {
+    case ShLightOptions::Polygons::alternative:
+      return sh::TriangleMethod::alternative;
+    case ShLightOptions::Polygons::compromise_radius:
+      return sh::TriangleMethod::compromise_radius;
+    case ShLightOptions::Polygons::compromise_angle:
+      return sh::TriangleMethod::compromise_angle;
+    default:
+      return sh::TriangleMethod::main;
+  }
+}
+
+}  // namespace
+
+void ShLights::add_mesh(const MeshLight& light) {
+  for (const MeshLight::Triangle& t : light.triangles())
+    if (options_.polygons == ShLightOptions::Polygons::exact)
+      exact_.add(t.a, t.b, t.c, light.emission(), light.two_sided());
+    else
+      add_triangle(t.a, t.b, t.c, light.emission(), light.two_sided(), 0);
+}
+
+void ShLights::add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth) {
+  const sh::TriangleSphere<float> shape = sh::triangle_sphere<float>(a, b, c);
+  if (!(shape.radius > 0)) return;
+  if (options_.split_error > 0 && depth < kMostCuts && split_error_of(shape) > options_.split_error) {
+    // Cut the longest side.
+    const float ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
+    if (bc >= ab && bc >= ca) return add_triangle(b, c, a, radiance, two_sided, depth);
+    if (ca >= ab && ca >= bc && ca > ab) return add_triangle(c, a, b, radiance, two_sided, depth);
+    const vec3 middle = 0.5f * (a + b);
+    add_triangle(a, middle, c, radiance, two_sided, depth + 1);
+    add_triangle(middle, b, c, radiance, two_sided, depth + 1);
+    return;
+  }
+  Triangles& t = triangles_;
+  t.spheres.add(shape.center, radiance);
+  t.spheres.radius.push_back(shape.radius);
+  t.spheres.axis_x.push_back(shape.normal.x), t.spheres.axis_y.push_back(shape.normal.y);
+  t.spheres.axis_z.push_back(shape.normal.z);
+  t.two_sided.push_back(two_sided), t.shapes.push_back(shape);
+}
+
+/// Relative L2 error of a triangle's sphere, the largest of three places `split_distance` away: over it, and
+/// aslant by 45 degrees along its plane's axes.
+float ShLights::split_error_of(const sh::TriangleSphere<float>& shape) const {
+  const Frame frame(shape.normal);
+  const float d = options_.split_distance, slant = std::sqrt(0.5f);
+  const int bands = options_.bands, n = sh::count(bands);
+  std::vector<float> exact(n), sphere(n);
+  float worst = 0;
+  for (const vec3 w : {frame.z, slant * (frame.z + frame.x), slant * (frame.z + frame.y)}) {
+    const vec3 x = shape.center + d * w;
+    sh::polygon_light<float>(bands, 3, shape.vertices, x, exact.data());
+    sh::triangle_sphere_light(bands, method_of(options_.polygons), shape, x, sphere.data());
+    double error = 0, size = 0;
+    for (int i = 0; i < n; ++i) error += sqr(double(sphere[i]) - exact[i]), size += sqr(double(exact[i]));
+    worst = std::max(worst, float(std::sqrt(error / std::max(size, 1e-300))));
+  }
+  return worst;
+}
+
+/// (Eq. 4.9, 4.10): spheres whose radiance is weighted by the cosine towards x, so that the kernels of
+/// spheres do the work: the cosine is a factor of the colours, and its gradient times the coefficients is the
+/// light of three more sets of colours.
+void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const {
+  const Arrays& s = triangles_.spheres;
+  const size_t count = s.x.size();
+  const int sets = gradient ? 4 : 1;
+  thread_local std::vector<float> scratch;
+  scratch.resize(count * 3 * sets);
+  const auto colour = [&](int set, int c) { return scratch.data() + (size_t(set) * 3 + c) * count; };
+  for (size_t k = 0; k < count; ++k) {
+    const vec3 w = x - vec3(s.x[k], s.y[k], s.z[k]), n(s.axis_x[k], s.axis_y[k], s.axis_z[k]);
+    const float d2 = glm::dot(w, w), inverse = d2 > 0 ? 1 / std::sqrt(d2) : 0.0f;
+    const float cosine = glm::dot(n, w) * inverse;
+    const float side = chosen && !(*chosen)[k]   ? 0.0f
+                       : cosine > 0              ? 1.0f
+                       : triangles_.two_sided[k] ? -1.0f
+                                                 : 0.0f;
+    for (int c = 0; c < 3; ++c) colour(0, c)[k] = s.colour[c][k] * side * cosine;
+    if (!gradient) continue;
+    const vec3 turn = (n - w * (cosine * inverse)) * (side * inverse);  // (Eq. 4.11), for x
+    for (int axis = 0; axis < 3; ++axis)
+      for (int c = 0; c < 3; ++c) colour(1 + axis, c)[k] = s.colour[c][k] * turn[axis];
+  }
+  sh::LightArrays<float> caps = s.caps();
+  const auto with = [&](int set) {
+    for (int c = 0; c < 3; ++c) caps.radiance[c] = colour(set, c);
+    return caps;
+  };
+  if (!gradient) return sh::accumulate_lights(bands, sh::LightShape::sphere, x, with(0), L);
+  sh::accumulate_lights_gradient(bands, sh::LightShape::sphere, x, with(0), L, gradient);
+  const int n = sh::count(bands);
+  thread_local std::vector<float> turned;
+  for (int axis = 0; axis < 3; ++axis) {
+    turned.assign(3 * size_t(n), 0.0f);
+    sh::accumulate_lights(bands, sh::LightShape::sphere, x, with(1 + axis), turned.data());
+    for (int c = 0; c < 3; ++c)
+      for (int i = 0; i < n; ++i) gradient[(c * 3 + axis) * n + i] += turned[c * n + i];
+  }
+}
+
+void ShLights::triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const {
+  const int n = sh::count(bands);
+  float one[sh::kMaxBands * sh::kMaxBands];
+  thread_local std::vector<vec3> slope;
+  if (gradient) slope.resize(n);
+  for (size_t k = 0; k < triangles_.shapes.size(); ++k) {
+    const sh::TriangleSphere<float>& t = triangles_.shapes[k];
+    if (!triangles_.two_sided[k] && !(glm::dot(t.normal, x - t.center) > 0)) continue;
+    sh::triangle_sphere_light<float>(bands, method_of(options_.polygons), t, x, one,
+                                     gradient ? slope.data() : nullptr);
+    for (int c = 0; c < 3; ++c) {
+      const float radiance = triangles_.spheres.colour[c][k];
+      for (int i = 0; i < n; ++i) L[c * n + i] += radiance * one[i];
+      if (!gradient) continue;
+      for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < n; ++i) gradient[(c * 3 + axis) * n + i] += radiance * slope[i][axis];
+    }
+  }
+}
+
+}  // namespace zonal

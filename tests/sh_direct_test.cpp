@@ -1,0 +1,216 @@
+// `sh_direct` beside closed forms, beside its own alternatives, and beside the path tracer without occlusion.
+#include "integrators/sh_direct/sh_direct.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/support.h"
+
+namespace zonal {
+namespace {
+
+/// One pixel that looks straight down on a grey floor lit by one sphere of half angle 0.01 rad, `degrees` off
+/// the normal and 10 m away.
+std::string lambert_under_small_light(double degrees) {
+  const double t = degrees * M_PI / 180;
+  return fmt::format(
+      R"({{"camera": {{"position": [0, 1, 0], "look_at": [0, 0, 0], "up": [0, 0, -1], "vertical_fov": 0.01, "resolution": [1, 1]}},
+      "materials": [{{"name": "grey", "type": "lambert", "albedo": 0.5}}],
+      "objects": [{{"name": "floor", "type": "quad", "corner": [-2, 0, 2], "edges": [[4, 0, 0], [0, 0, -4]], "material": "grey"}}],
+      "lights": [{{"type": "sphere", "center": [{}, {}, 0], "radius": 0.09999833334, "radiance": 100}}]}})",
+      10 * std::sin(t), 10 * std::cos(t));
+}
+
+double one_pixel(const Scene& scene, const std::string& settings) {
+  return test::render_with(scene, "sh_direct", {.settings = settings, .width = 1, .height = 1}).pixels[0];
+}
+
+/// E/pi albedo of the series cut to N bands, in double: (Eq. 3.10) as printed, and the clamped cosine's
+/// closed form (Ramamoorthi and Hanrahan 2001).
+double cut_series(int bands, double half_angle, double cos_theta, double radiance_times_albedo) {
+  std::vector<double> at_alpha(bands + 2), at_theta(bands + 2);
+  const auto legendre = [](std::vector<double>& P, double x) {
+    P[0] = 1, P[1] = x;
+    for (size_t l = 2; l < P.size(); ++l) P[l] = ((2.0 * l - 1) * x * P[l - 1] - (l - 1.0) * P[l - 2]) / l;
+  };
+  legendre(at_alpha, std::cos(half_angle)), legendre(at_theta, cos_theta);
+  double sum = 0;
+  for (int l = 0; l < bands; ++l) {
+    const double light = l == 0 ? std::sqrt(M_PI) * (1 - at_alpha[1])
+                                : std::sqrt(M_PI / (2 * l + 1)) * (at_alpha[l - 1] - at_alpha[l + 1]);
+    double cosine = 0;  // sqrt(4 pi/(2l+1)) times the zonal coefficient
+    if (l == 0) cosine = M_PI;
+    if (l == 1) cosine = 2 * M_PI / 3;
+    if (l > 1 && l % 2 == 0)
+      cosine = 2 * M_PI * (l / 2 % 2 ? 1 : -1) / ((l + 2.0) * (l - 1)) * std::tgamma(l + 1) /
+               (std::pow(2.0, l) * sqr(std::tgamma(l / 2 + 1)));
+    sum += light * cosine * std::sqrt((2 * l + 1) / (4 * M_PI)) * at_theta[l];
+  }
+  return radiance_times_albedo / M_PI * sum;
+}
+
+TEST(ShDirect, lambert_under_a_small_light_is_the_cut_series) {
+  // The thesis' bands, and how far the series is from the truth, pi sin^2 a cos theta: what `path` converges
+  // to.
+  for (const auto& [bands, most] : {std::pair{3, 0.055}, {5, 0.026}, {9, 0.011}}) {
+    double squares = 0, mean = 0;
+    int count = 0;
+    for (int degrees = 0; degrees <= 80; degrees += 5, ++count) {
+      const Scene scene = test::scene_from(lambert_under_small_light(degrees));
+      const double cos_theta = std::cos(degrees * M_PI / 180);
+      const double value = one_pixel(scene, fmt::format(R"({{"bands": {0}, "light_bands": {0}}})", bands));
+      const double truth = 0.5 * 100 * sqr(std::sin(0.01)) * cos_theta;
+      EXPECT_NEAR(value, cut_series(bands, 0.01, cos_theta, 50), 1e-5 * 50 * sqr(0.01))
+          << degrees << " degrees";
+      squares += sqr(value - truth), mean += truth;
+    }
+    const double error = std::sqrt(squares / count) / (mean / count);
+    fmt::print("{} bands: RMSE over mean {:.4f}\n", bands, error);
+    EXPECT_LT(error, most) << bands << " bands";
+    EXPECT_GT(error, most / 4) << "the series cannot be that good";
+  }
+}
+
+const char* kFewLights =
+    R"({"camera": {"position": [0, 3, 5], "look_at": [0, 0.4, 0], "vertical_fov": 40, "resolution": [32, 24]},
+  "materials": [{"name": "matt", "type": "lambert", "albedo": [0.7, 0.6, 0.5]},
+                {"name": "rough", "type": "metallic_roughness", "base_color": [0.8, 0.5, 0.3], "metallic": 0.4, "roughness": 0.75}],
+  "objects": [{"name": "floor", "type": "quad", "corner": [-4, 0, 4], "edges": [[8, 0, 0], [0, 0, -8]], "material": "matt"},
+              {"name": "ball", "type": "sphere", "center": [0.8, 0.7, 0], "radius": 0.7, "material": "rough"},
+              {"name": "other", "type": "sphere", "center": [-0.8, 0.7, 0], "radius": 0.7, "material": "matt"}],
+  "lights": [{"type": "sphere", "center": [2, 2.5, 1], "radius": 0.5, "radiance": [8, 2, 2]},
+             {"type": "sphere", "center": [-3, 3, 2], "radius": 0.7, "radiance": [2, 8, 2]},
+             {"type": "sphere", "center": [0, 4, -2], "radius": 0.6, "radiance": [2, 2, 12]},
+             {"type": "quad", "corner": [-1, 3, 3], "edges": [[2, 0, 0], [0, 0.7, 0.7]], "radiance": 3, "two_sided": true},
+             {"type": "spot", "position": [1, 5, 0], "look_at": [0, 0, 0], "intensity": 10, "inner": 5, "outer": 30},
+             {"type": "environment", "radiance": 0.1}]})";
+
+/// RMSE over the mean.
+double relative_rmse(const Image& a, const Image& b) {
+  double error = 0, mean = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i)
+    error += sqr(double(a.pixels[i]) - b.pixels[i]), mean += b.pixels[i];
+  return std::sqrt(error / double(a.pixels.size())) / (mean / double(a.pixels.size()));
+}
+
+Image sh_image(const Scene& scene, const std::string& settings, int threads = 2) {
+  return test::render_with(scene, "sh_direct",
+                           {.settings = settings, .width = 32, .height = 24, .threads = threads});
+}
+
+TEST(ShDirect, tends_to_the_path_tracer_without_occlusion_as_bands_grow) {
+  const Scene scene = test::scene_from(kFewLights);
+  // One pass at pixel centres for sh_direct; so the reference averages passes with one seed each.
+  Image reference;
+  constexpr int kSeeds = 160;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Image one = test::render_with(scene, "path",
+                                        {.settings = R"({"max_bounces": 0, "direct_occlusion": "none"})",
+                                         .width = 32,
+                                         .height = 24,
+                                         .seed = seed});
+    if (seed == 1)
+      reference = one;
+    else
+      for (size_t i = 0; i < one.pixels.size(); ++i) reference.pixels[i] += one.pixels[i];
+  }
+  for (float& v : reference.pixels) v /= kSeeds;
+  double before = 1;
+  // What the clamped cosine and the lobe of roughness 0.75 leave to higher bands; the last is the noise of
+  // 160 samples, about 1.5 %.
+  for (const auto& [bands, most] : {std::pair{2, 0.25}, {3, 0.06}, {5, 0.035}, {9, 0.025}}) {
+    const double error = relative_rmse(
+        sh_image(scene, fmt::format(R"({{"bands": {0}, "light_bands": {0}}})", bands)), reference);
+    fmt::print("{} bands: RMSE over mean {:.4f}\n", bands, error);
+    EXPECT_LT(error, most) << bands;
+    EXPECT_LT(error, before * 1.02) << bands;
+    before = error;
+  }
+}
+
+TEST(ShDirect, every_way_to_shade_agrees_on_what_it_shares) {
+  // On Lambert coefficient 0 of the product is the double product whatever the way, as long as the cosine
+  // keeps the light's bands (Eq. 4.4).
+  const Scene matt = test::scene_from(lambert_under_small_light(40));
+  const double table = one_pixel(matt, R"({"bands": 5, "light_bands": 5})");
+  for (const char* shading : {"cosine", "general", "turned"}) {
+    EXPECT_NEAR(
+        one_pixel(matt, fmt::format(R"({{"bands": 5, "light_bands": 5, "shading": "{}"}})", shading)) / table,
+        1, 1e-5)
+        << shading;
+    EXPECT_NEAR(
+        one_pixel(matt, fmt::format(R"({{"bands": 9, "light_bands": 5, "shading": "{}"}})", shading)) / table,
+        1, 1e-5)
+        << shading;
+  }
+  // With a cosine of 3 bands it is the series of 3.
+  const double three = one_pixel(matt, R"({"bands": 3, "light_bands": 3})");
+  EXPECT_NEAR(
+      one_pixel(matt, R"({"bands": 9, "light_bands": 9, "shading": "turned", "cosine_bands": 3})") / three, 1,
+      1e-5);
+  EXPECT_NEAR(
+      one_pixel(
+          matt,
+          R"({"bands": 9, "light_bands": 9, "shading": "cosine", "diffuse": "irradiance", "cosine_bands": 3})") /
+          three,
+      1, 1e-5);
+  EXPECT_GT(std::abs(table / three - 1), 0.01) << "nothing was tested";
+
+  // On a rough lobe the ways differ by what their cuts lose: a tenth at 9 bands.
+  const Scene scene = test::scene_from(kFewLights);
+  const Image whole = sh_image(scene, R"({"bands": 9, "light_bands": 9})");
+  for (const char* shading : {"cosine", "general", "turned"}) {
+    const double error = relative_rmse(
+        sh_image(scene, fmt::format(R"({{"bands": 9, "light_bands": 9, "shading": "{}"}})", shading)), whole);
+    fmt::print("{}: {:.4f} off the table\n", shading, error);
+    EXPECT_LT(error, 0.1) << shading;
+  }
+}
+
+TEST(ShDirect, the_automatic_window_leaves_nothing_negative) {
+  // A tiny light on a glossy floor rings; a light seen through the positive kernel does not.
+  const Scene scene =
+      test::scene_from(R"({"camera": {"position": [0, 1, 3], "look_at": [0, 0, 0], "resolution": [24, 24]},
+    "materials": [{"name": "m", "type": "conductor", "metal": "gold", "roughness": 0.5}],
+    "objects": [{"name": "o", "type": "quad", "corner": [-4, 0, 4], "edges": [[8, 0, 0], [0, 0, -8]], "material": "m"}],
+    "lights": [{"type": "sphere", "center": [0, 2, -1], "radius": 0.05, "radiance": 1000}]})");
+  const ShLights lights(scene.lights(), {.bands = 7});
+  const auto lowest = [&](ShReceiverParams::Window window) {
+    ShReceiverParams params;
+    params.bands = params.light_bands = 7, params.window = window;
+    const ShReceiver receiver(params, scene.materials(), {});
+    float least = 0, most = 0;
+    for (int i = 0; i < 200; ++i) {
+      const vec3 target(0.04f * float(i % 20 - 10), 0, 0.3f * float(i / 20 - 5));
+      const vec3 direction = glm::normalize(target - scene.camera().position);
+      const Surface s = scene.surface(scene.intersect(scene.camera().position, direction), direction);
+      std::vector<float> L(3 * 49);
+      lights.coefficients(7, s.position, L.data());
+      const vec3 r = receiver.shade(s, scene.bsdf(s), 7, L.data());
+      least = std::min(least, r.x), most = std::max(most, r.x);
+    }
+    return least / most;
+  };
+  EXPECT_LT(lowest(ShReceiverParams::Window::none), -0.01f);
+  // The tables of materials are quadratures with an error of their own.
+  EXPECT_GT(lowest(ShReceiverParams::Window::automatic), -2e-3f);
+}
+
+TEST(ShDirect, is_the_same_on_any_number_of_threads) {
+  const Scene scene = test::scene_from(kFewLights);
+  EXPECT_EQ(sh_image(scene, "{}", 1).pixels, sh_image(scene, "{}", 2).pixels);
+}
+
+TEST(ShDirect, refuses_a_scene_without_lights) {
+  const Scene scene = test::scene_from(R"({"camera": {"position": [0, 1, 3], "look_at": [0, 0, 0]}})");
+  try {
+    sh_image(scene, "{}");
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("without lights"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace zonal
