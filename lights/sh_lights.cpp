@@ -107,38 +107,32 @@ void ShLights::all(int bands, vec3 x, float* L, float* gradient, bool spheres) c
     triangles_one_by_one(bands, x, L, gradient);
 }
 
-void ShLights::mixed(int bands, vec3 x, float step, float* L, float* gradient, float* mixed) const {
+void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian) const {
   const size_t n = sh::count(bands);
-  std::fill_n(mixed, 9 * n, 0.0f);
+  std::fill_n(hessian, 18 * n, 0.0f);
   all(bands, x, L, gradient, false);
   if (count() > spheres_.count()) {
-    // Each mixed derivative is had twice: the slope along one axis of the derivative for the other.
+    constexpr size_t kPlace[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     thread_local std::vector<float> ignored, slopes[2];
     ignored.resize(3 * n), slopes[0].resize(9 * n), slopes[1].resize(9 * n);
-    for (int along = 0; along < 3; ++along) {
+    for (size_t along = 0; along < 3; ++along) {
       vec3 h(0);
       h[along] = step;
       all(bands, x + h, ignored.data(), slopes[0].data(), false);
       all(bands, x - h, ignored.data(), slopes[1].data(), false);
-      for (int axis = 0; axis < 3; ++axis) {
-        if (axis == along) continue;
-        const size_t k = axis + along - 1;  // xy, xz, yz
+      for (size_t axis = 0; axis < 3; ++axis) {
+        // Mixed ones are had twice: the slope along one axis of the derivative for the other.
+        const float scale = (axis == along ? 0.5f : 0.25f) / step;
         for (size_t c = 0; c < 3; ++c)
           for (size_t i = 0; i < n; ++i) {
             const size_t from = (c * 3 + axis) * n + i;
-            mixed[(c * 3 + k) * n + i] += (slopes[0][from] - slopes[1][from]) / (4 * step);
+            hessian[(c * 6 + kPlace[axis][along]) * n + i] += (slopes[0][from] - slopes[1][from]) * scale;
           }
       }
     }
   }
-  if (spheres_.count() == 0) return;
-  thread_local std::vector<float> hessian;
-  hessian.assign(18 * n, 0.0f);
-  sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(), L, gradient, hessian.data());
-  constexpr size_t kFrom[3] = {1, 2, 4};  // of xx, xy, xz, yy, yz, zz
-  for (size_t c = 0; c < 3; ++c)
-    for (size_t k = 0; k < 3; ++k)
-      for (size_t i = 0; i < n; ++i) mixed[(c * 3 + k) * n + i] += hessian[(c * 6 + kFrom[k]) * n + i];
+  if (spheres_.count() > 0)
+    sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(), L, gradient, hessian);
 }
 
 }  // namespace zonal

@@ -49,9 +49,9 @@ class ShLights {
   void coefficients(int bands, vec3 x, float* L) const;
   /// Also gradient[(c * 3 + axis) * sh::count(bands) + i], with respect to x.
   void gradient(int bands, vec3 x, float* L, float* gradient) const;
-  /// Also mixed[(c * 3 + k) * sh::count(bands) + i], second derivatives xy, xz, yz: of spheres in closed
+  /// Also hessian[(c * 6 + k) * sh::count(bands) + i], second derivatives xx, xy, xz, yy, yz, zz: of spheres in closed
   /// form, of all others by differences of gradients over `step` metres.
-  void mixed(int bands, vec3 x, float step, float* L, float* gradient, float* mixed) const;
+  void hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian) const;
 
  private:
   /// A structure of arrays; `radiance` of spheres and triangles, intensity of points and spots.

@@ -88,10 +88,7 @@ void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient
     const vec3 w = x - vec3(s.x[k], s.y[k], s.z[k]), n(s.axis_x[k], s.axis_y[k], s.axis_z[k]);
     const float d2 = glm::dot(w, w), inverse = d2 > 0 ? 1 / std::sqrt(d2) : 0.0f;
     const float cosine = glm::dot(n, w) * inverse;
-    const float side = chosen && !(*chosen)[k]   ? 0.0f
-                       : cosine > 0              ? 1.0f
-                       : triangles_.two_sided[k] ? -1.0f
-                                                 : 0.0f;
+    const float side = cosine > 0 ? 1.0f : triangles_.two_sided[k] ? -1.0f : 0.0f;
     for (int c = 0; c < 3; ++c) colour(0, c)[k] = s.colour[c][k] * side * cosine;
     if (!gradient) continue;
     const vec3 turn = (n - w * (cosine * inverse)) * (side * inverse);  // (Eq. 4.11), for x

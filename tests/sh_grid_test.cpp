@@ -79,27 +79,28 @@ TEST(ShGrid, errors_fall_as_fast_as_the_schemes_promise) {
   }
 }
 
-TEST(ShGrid, mixed_derivatives_are_slopes_of_gradients) {
+TEST(ShGrid, hessians_are_slopes_of_gradients) {
   const int bands = 4, n = sh::count(bands);
   const ShLights lights = lights_around(bands);
   const vec3 x(0.3f, 0.4f, 0.6f);
-  std::vector<float> L(3 * n), gradient(9 * n), mixed(9 * n), before(9 * n), after(9 * n);
-  lights.mixed(bands, x, 0.01f, L.data(), gradient.data(), mixed.data());
-  const auto check = [&](int along, int axis, int k) {
+  std::vector<float> L(3 * n), gradient(9 * n), hessian(18 * n), before(9 * n), after(9 * n);
+  lights.hessian(bands, x, 0.01f, L.data(), gradient.data(), hessian.data());
+  const int place[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  for (int along = 0; along < 3; ++along) {
     vec3 h(0);
     h[along] = 1.0f / 128;
     std::vector<float> ignored(3 * n);
     lights.gradient(bands, x - h, ignored.data(), before.data());
     lights.gradient(bands, x + h, ignored.data(), after.data());
-    for (int c = 0; c < 3; ++c)
-      for (int i = 0; i < n; ++i) {
-        const int from = (c * 3 + axis) * n + i;
-        // Gradients of 3/m and less, rounded in the seventh digit; third order terms of h^2 = 6e-5.
-        EXPECT_NEAR(mixed[(c * 3 + k) * n + i], (after[from] - before[from]) * 64, 5e-3)
-            << along << axis << ' ' << i;
-      }
-  };
-  check(0, 1, 0), check(2, 0, 1), check(1, 2, 2), check(1, 0, 0), check(0, 2, 1), check(2, 1, 2);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < n; ++i) {
+          const int from = (c * 3 + axis) * n + i;
+          // Gradients of 3/m and less, rounded in the seventh digit; third order terms of h^2 = 6e-5.
+          EXPECT_NEAR(hessian[(c * 6 + place[axis][along]) * n + i], (after[from] - before[from]) * 64, 1e-2)
+              << along << axis << ' ' << i;
+        }
+  }
 }
 
 TEST(ShGrid, neighbouring_cells_agree_on_the_face_they_share) {
@@ -145,6 +146,26 @@ TEST(ShGrid, hermite_weights_are_exact_for_cubic_polynomials) {
       for (int part = 0; part < 7; ++part) sum += w[k][part] * parts[part];
     }
     EXPECT_NEAR(sum, f(t * size), 1e-5);
+  }
+}
+
+TEST(ShGrid, derivatives_of_hermite_weights_are_their_slopes) {
+  const vec3 size(0.5f, 2, 1), t(0.3f, 0.6f, 0.45f);
+  const ShScheme scheme{Interpolation::hermite, Mixed::hessian};
+  for (int derivative = 1; derivative < 8; ++derivative) {
+    // Along one axis of it, from the weights with one derivative less.
+    int axis = 0;
+    while (!(derivative >> axis & 1)) ++axis;
+    vec3 h(0);
+    h[axis] = 1.0f / 256;
+    const CellWeights after = cell_weights(scheme, t + h, size, derivative & ~(1 << axis)),
+                      before = cell_weights(scheme, t - h, size, derivative & ~(1 << axis)),
+                      slope = cell_weights(scheme, t, size, derivative);
+    for (int k = 0; k < 8; ++k)
+      for (int part = 0; part < kCellParts; ++part)
+        // A cubic's third derivative is at most 12: h^2/6 of it is 3e-5, over sizes of half a metre.
+        EXPECT_NEAR(slope[k][part], (after[k][part] - before[k][part]) * 128 / size[axis], 2e-3)
+            << derivative;
   }
 }
 

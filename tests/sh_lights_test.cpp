@@ -49,7 +49,7 @@ Lights mixed() {
   point.position = vec3(0, 1.5f, 2), point.intensity = vec3(3, 2, 1);
   put(lights, point);
   put(lights, spot());
-  put(lights, test::quad(vec3(1, 2, 1), vec3(0, 0, 0.7f), vec3(0.9f, 0, 0.1f)));
+  put(lights, test::quad(vec3(1, 2, 1), vec3(0.9f, 0, 0.1f), vec3(0, 0, 0.7f)));
   return lights;
 }
 
@@ -71,7 +71,7 @@ TEST(ShLights, sum_what_each_light_sends_alone) {
   sh::point_light<double>(bands, p, {0, 1.5, 2}, 1, one.data()), add(vec3(3, 2, 1));
   const sh::SpotCone<double> cone{glm::dvec3(spot().direction), std::cos(0.2f), std::cos(0.9f)};
   sh::spot_light<double>(bands, p, {1, 3, -1}, 1, cone, one.data()), add(vec3(5, 4, 3));
-  const vec3 a(1, 2, 1), u(0, 0, 0.7f), v(0.9f, 0, 0.1f);
+  const vec3 a(1, 2, 1), u(0.9f, 0, 0.1f), v(0, 0, 0.7f);
   const glm::dvec3 corners[4] = {a, a + u, a + u + v, a + v};
   ASSERT_GT(glm::dot(glm::cross(u, v), x - a), 0) << "the quad faces the point";
   sh::polygon_light<double>(bands, 4, corners, p, one.data()), add(vec3(1, 2, 3));

@@ -8,12 +8,17 @@ namespace {
 using AllWeights = std::array<std::array<float, 8>, 8>;
 
 /// Tensor product of cubic Hermite polynomials: value and slope at both ends, each axis.
-AllWeights tricubic(vec3 t, vec3 size) {
+AllWeights tricubic(vec3 t, vec3 size, int derivative) {
   float basis[3][2][2];  // [axis][end][slope]
   for (int axis = 0; axis < 3; ++axis) {
-    const float u = t[axis], v = 1 - u;
-    basis[axis][0][0] = v * v * (1 + 2 * u), basis[axis][0][1] = size[axis] * u * v * v;
-    basis[axis][1][0] = u * u * (1 + 2 * v), basis[axis][1][1] = -size[axis] * u * u * v;
+    const float u = t[axis], v = 1 - u, s = size[axis];
+    if (derivative >> axis & 1) {
+      basis[axis][0][0] = -6 * u * v / s, basis[axis][0][1] = v * (v - 2 * u);
+      basis[axis][1][0] = 6 * u * v / s, basis[axis][1][1] = u * (u - 2 * v);
+    } else {
+      basis[axis][0][0] = v * v * (1 + 2 * u), basis[axis][0][1] = s * u * v * v;
+      basis[axis][1][0] = u * u * (1 + 2 * v), basis[axis][1][1] = -s * u * u * v;
+    }
   }
   AllWeights w;
   for (int k = 0; k < 8; ++k)
@@ -38,7 +43,7 @@ void estimate(int d, vec3 size, AllWeights& w) {
 
 }  // namespace
 
-CellWeights cell_weights(const ShScheme& scheme, vec3 t, vec3 size) {
+CellWeights cell_weights(const ShScheme& scheme, vec3 t, vec3 size, int derivative) {
   CellWeights result{};
   if (scheme.interpolation != ShScheme::Interpolation::hermite) {
     for (int k = 0; k < 8; ++k) {
@@ -51,15 +56,14 @@ CellWeights cell_weights(const ShScheme& scheme, vec3 t, vec3 size) {
     }
     return result;
   }
-  AllWeights w = tricubic(t, size);
-  constexpr int kParts[kCellParts] = {0, 1, 2, 4, 3, 5, 6};  // value; x, y, z; xy, xz, yz
+  AllWeights w = tricubic(t, size, derivative);
   if (scheme.mixed != ShScheme::Mixed::zero) {
     estimate(7, size, w);
     if (scheme.mixed == ShScheme::Mixed::differences)
       for (const int d : {3, 5, 6}) estimate(d, size, w);
   }
   for (int k = 0; k < 8; ++k)
-    for (int part = 0; part < scheme.parts(); ++part) result[k][part] = w[k][kParts[part]];
+    for (int part = 0; part < scheme.parts(); ++part) result[k][part] = w[k][kPartDerivative[part]];
   return result;
 }
 

@@ -33,8 +33,11 @@ struct ShScheme {
 inline constexpr int kCellParts = 7;
 using CellWeights = std::array<std::array<float, kCellParts>, 8>;  ///< [corner][part]
 
-/// `t` in [0,1]^3, `size` of the box in metres.
-CellWeights cell_weights(const ShScheme& scheme, vec3 t, vec3 size);
+/// `t` in [0,1]^3, `size` of the box in metres. Hermite's alone: `derivative` dx + 2 dy + 4 dz, each 0 or 1,
+/// of what is interpolated, per metre.
+CellWeights cell_weights(const ShScheme& scheme, vec3 t, vec3 size, int derivative = 0);
+/// Which derivative each part is, as above: the value; x, y, z; xy, xz, yz.
+inline constexpr int kPartDerivative[kCellParts] = {0, 1, 2, 4, 3, 5, 6};
 
 /// L[c * count + i] of the first `count` of `n` coefficients.
 void combine(const ShScheme& scheme, const CellWeights& weights, const std::array<const float*, 8>& corners,

@@ -12,8 +12,8 @@
 namespace zonal {
 
 void ShDirectParams::visit(ParamVisitor& v) {
-  v.choice("at", at, {"pixel", "grid"},
-           "where the lights are projected; grid: between its points they are interpolated");
+  v.choice("at", at, {"pixel", "grid", "octree"},
+           "where the lights are projected; between the points of a grid or octree they are interpolated");
   v.choice(
       "occlusion", occlusion, {"none", "ambient", "ratio"},
       "what blocks light: nothing; what is near, from all sides alike; everything, by rays to the lights");
@@ -33,7 +33,9 @@ void ShDirectParams::visit(ParamVisitor& v) {
   v.integer_or_auto("grid", grid, {2, 1e6}, "points",
                     "along the longest side of the box around what is seen; auto: by grid_error");
   v.number("grid_error", grid_error, {.low = 0, .high = 1, .open_low = true}, "",
-           "wanted of grid auto: RMSE against at pixel over the mean");
+           "wanted of grid auto and octree: RMSE against at pixel over the mean");
+  v.integer("octree_points", octree_points, {0, 1e8}, "points",
+            "of the octree at most; 0: until grid_error is met");
   v.choice("interpolation", scheme.interpolation, {"hermite", "taylor", "linear"},
            "between the grid's points");
   v.choice(
@@ -61,7 +63,10 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   groups_.clear();
   lights_ = 0;
   for (const auto& lights : light_groups(scene.lights(), ratio ? params_.groups : 1)) {
-    groups_.push_back({ShLights(lights, options), {}, ratio ? LightSelector(lights) : LightSelector()});
+    Group group;
+    group.lights = ShLights(lights, options);
+    if (ratio) group.selector = LightSelector(lights);
+    groups_.push_back(std::move(group));
     lights_ += groups_.back().lights.count();
   }
   refuse_too_large_a_grid();
@@ -86,6 +91,10 @@ void ShDirectIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStat
   if (scene_ != &pass.scene) load(pass.scene, stop, stats);
   if (params_.at == ShDirectParams::At::pixel) return;
   const ShSeen seen = look_around(pass.scene, pass.camera, stop);
+  if (params_.at == ShDirectParams::At::octree) {
+    for (Group& group : groups_) build_octree(group, seen, stop, stats);
+    return;
+  }
   if (params_.grid != kAuto) chosen_ = params_.grid;
   if (chosen_ == 0) choose_grid(seen, stop, stats);
   build_grids(seen, seen.positions, chosen_, stop);
@@ -107,43 +116,76 @@ void ShDirectIntegrator::build_grids(const ShSeen& seen, std::span<const vec3> w
   }
 }
 
+/// What the probes reflect of the groups' lights as it is interpolated against `exact`: RMSE over mean.
+double ShDirectIntegrator::probed_error(const ShSeen& seen, std::span<const vec3> exact,
+                                        std::span<const Group> groups) const {
+  double squares = 0, sum = 0;
+  for (size_t i = 0; i < exact.size(); ++i) {
+    vec3 off = -exact[i];
+    for (const Group& group : groups)
+      off += reflected(group, seen.probes[i].surface, seen.probes[i].bsdf, false);
+    squares += glm::dot(off, off), sum += exact[i].x + exact[i].y + exact[i].z;
+  }
+  return sum > 0 ? std::sqrt(squares * 3 * double(exact.size())) / sum : 0;
+}
+
+namespace {
+constexpr int kMostGrid = 192, kMostOctreePoints = 1 << 20;
+}
+
 /// The coarsest grid of a series that meets `grid_error` at points spread over the picture.
 void ShDirectIntegrator::choose_grid(const ShSeen& seen, const Stop& stop, PassStats& stats) {
   std::vector<vec3> exact, places;
-  const auto of_all = [&](const ShSeen::Probe& p, bool from_grid) {
-    vec3 sum(0);
-    for (const Group& group : groups_) sum += reflected(group, p.surface, p.bsdf, from_grid);
-    return sum;
-  };
-  double mean = 0, error = 0;
   for (const ShSeen::Probe& p : seen.probes) {
-    exact.push_back(of_all(p, false)), places.push_back(p.surface.position);
-    mean += exact.back().x + exact.back().y + exact.back().z;
+    vec3 sum(0);
+    for (const Group& group : groups_) sum += reflected(group, p.surface, p.bsdf, true);
+    exact.push_back(sum), places.push_back(p.surface.position);
   }
+  double error = 0;
   for (chosen_ = 4; !stop(); chosen_ = chosen_ * 4 / 3 + 1) {
     build_grids(seen, places, chosen_, stop);
-    double squares = 0;
-    for (size_t i = 0; i < exact.size(); ++i) {
-      const vec3 off = of_all(seen.probes[i], true) - exact[i];
-      squares += glm::dot(off, off);
-    }
-    error = mean > 0 ? std::sqrt(squares * 3 * double(exact.size())) / mean : 0;
-    // A grid with more points than there are pixels is no help.
-    if (error <= params_.grid_error || chosen_ > 192) break;
+    error = probed_error(seen, exact, groups_);
+    if (error <= params_.grid_error || chosen_ > kMostGrid) break;
   }
   stats.numbers["grid_error_measured"] = error;
   if (error > params_.grid_error)
-    stats.warnings.push_back(
-        fmt::format("grid: {} points a side leave an error of {:.2g}; \"at\": \"pixel\" is for this scene",
-                    chosen_, error));
+    stats.warnings.push_back(fmt::format(
+        "grid: {} points a side leave an error of {:.2g}; \"at\": \"octree\" or \"pixel\" is for this scene",
+        chosen_, error));
+}
+
+/// Refined until the error at points spread over the picture is `grid_error`, or up to the points wanted.
+void ShDirectIntegrator::build_octree(Group& group, const ShSeen& seen, const Stop& stop, PassStats& stats) {
+  group.octree = ShOctree(Box::around(seen.positions), receiver_.most_light_bands(), seen.positions);
+  const int wanted = params_.octree_points > 0 ? params_.octree_points : group.octree_points;
+  if (wanted > 0) {
+    group.octree.build(
+        group.lights, wanted, [] { return false; }, stop);
+  } else {
+    std::vector<vec3> exact;
+    for (const ShSeen::Probe& p : seen.probes) exact.push_back(reflected(group, p.surface, p.bsdf, true));
+    double error = 0;
+    const auto good_enough = [&] {
+      error = probed_error(seen, exact, {&group, 1});
+      return error <= params_.grid_error;
+    };
+    group.octree.build(group.lights, kMostOctreePoints, good_enough, stop);
+    group.octree_points = group.octree.points();
+    stats.numbers["grid_error_measured"] = std::max(stats.numbers["grid_error_measured"], error);
+  }
+  stats.numbers["octree_points"] += group.octree.points(),
+      stats.numbers["octree_leaves"] += group.octree.leaves();
 }
 
 vec3 ShDirectIntegrator::reflected(const Group& group, const Surface& s, const Bsdf& bsdf,
-                                   bool from_grid) const {
+                                   bool exactly) const {
+  using At = ShDirectParams::At;
   const int bands = receiver_.light_bands(s, bsdf);
   float L[3 * kMostShBands * kMostShBands];
-  if (!from_grid || !group.grid.interpolate(s.position, bands, L))
-    group.lights.coefficients(bands, s.position, L);
+  const bool found =
+      !exactly && ((params_.at == At::grid && group.grid.interpolate(s.position, bands, L)) ||
+                   (params_.at == At::octree && group.octree.interpolate(s.position, bands, L)));
+  if (!found) group.lights.coefficients(bands, s.position, L);
   return receiver_.shade(s, bsdf, bands, L);
 }
 
@@ -152,7 +194,7 @@ vec3 ShDirectIntegrator::reflected(const Surface& s, const Bsdf& bsdf, Sampler& 
   using Occlusion = ShDirectParams::Occlusion;
   vec3 sum(0);
   for (const Group& group : groups_) {
-    vec3 some = reflected(group, s, bsdf, params_.at == ShDirectParams::At::grid);
+    vec3 some = reflected(group, s, bsdf, false);
     if (params_.occlusion == Occlusion::ratio)
       some *= shadow_ratio(*scene_, group.selector, s, bsdf, params_.rays, sampler, stats);
     sum += some;

@@ -5,6 +5,7 @@
 
 #include "core/integrator.h"
 #include "integrators/sh_direct/sh_grid.h"
+#include "integrators/sh_direct/sh_octree.h"
 #include "integrators/sh_direct/sh_receiver.h"
 #include "integrators/sh_direct/sh_seen.h"
 #include "lights/sh_lights.h"
@@ -12,7 +13,7 @@
 namespace zonal {
 
 struct ShDirectParams : ShReceiverParams {
-  enum class At { pixel, grid };
+  enum class At { pixel, grid, octree };
   enum class Occlusion { none, ambient, ratio };
   enum class Spheres { sphere, disk };
 
@@ -25,6 +26,7 @@ struct ShDirectParams : ShReceiverParams {
   Spheres spheres = Spheres::sphere;
   int grid = 8;  ///< points along the longest side, or kAuto
   float grid_error = 0.01f;
+  int octree_points = 0;  ///< 0: by grid_error
   ShScheme scheme;
 
   void visit(ParamVisitor& v);
@@ -48,13 +50,17 @@ class ShDirectIntegrator : public Integrator {
   struct Group {
     ShLights lights;
     ShGrid grid;
+    ShOctree octree;
+    int octree_points = 0;   ///< once they have been found
     LightSelector selector;  ///< occlusion ratio
   };
-  vec3 reflected(const Group&, const Surface&, const Bsdf&, bool from_grid) const;
+  vec3 reflected(const Group&, const Surface&, const Bsdf&, bool exactly) const;
   vec3 reflected(const Surface&, const Bsdf&, Sampler&, TileStats&) const;
   void refuse_too_large_a_grid() const;
   void build_grids(const ShSeen&, std::span<const vec3> wanted, int points_a_side, const Stop&);
   void choose_grid(const ShSeen&, const Stop&, PassStats&);
+  void build_octree(Group&, const ShSeen&, const Stop&, PassStats&);
+  double probed_error(const ShSeen&, std::span<const vec3> exact, std::span<const Group> groups) const;
 
   ShDirectParams params_;
   std::string where_;

@@ -18,20 +18,23 @@ Box Box::around(std::span<const vec3> positions) {
 }
 
 void compute_grid_point(const ShLights& lights, const ShScheme& scheme, int bands, vec3 x, float step,
-                        float* out) {
+                        float* out, float* straight) {
   const int n = sh::count(bands);
   if (scheme.parts() == 1) return lights.coefficients(bands, x, out);
-  thread_local std::vector<float> gradient, mixed;
-  gradient.resize(9 * size_t(n)), mixed.resize(9 * size_t(n));
-  if (scheme.parts() == 7)
-    lights.mixed(bands, x, step, out, gradient.data(), mixed.data());
+  thread_local std::vector<float> gradient, hessian;
+  gradient.resize(9 * size_t(n)), hessian.resize(18 * size_t(n));
+  if (scheme.parts() == kCellParts)
+    lights.hessian(bands, x, step, out, gradient.data(), hessian.data());
   else
     lights.gradient(bands, x, out, gradient.data());
+  constexpr int kMixed[3] = {1, 2, 4}, kStraight[3] = {0, 3, 5};  // of xx, xy, xz, yy, yz, zz
   for (int c = 0; c < 3; ++c)
     for (int axis = 0; axis < 3; ++axis) {
       std::copy_n(gradient.data() + (c * 3 + axis) * n, n, out + ((1 + axis) * 3 + c) * n);
-      if (scheme.parts() == 7)
-        std::copy_n(mixed.data() + (c * 3 + axis) * n, n, out + ((4 + axis) * 3 + c) * n);
+      if (scheme.parts() < kCellParts) continue;
+      std::copy_n(hessian.data() + (c * 6 + kMixed[axis]) * n, n, out + ((4 + axis) * 3 + c) * n);
+      if (straight)
+        std::copy_n(hessian.data() + (c * 6 + kStraight[axis]) * n, n, straight + (axis * 3 + c) * n);
     }
 }
 

@@ -27,10 +27,11 @@ struct Box {
   }
 };
 
-/// What a grid holds of one point, from the lights: scheme.parts() * 3 * n numbers, as ShCell has them.
-/// `step`: metres, of the differences where a Hessian has no closed form.
+/// What a grid holds of one point, from the lights: scheme.parts() * 3 * n numbers, as sh_cell.h has them.
+/// `step`: metres, of the differences where a Hessian has no closed form. `straight`, where it is not null
+/// and the scheme takes the Hessian: xx, yy, zz, at (axis * 3 + c) * n.
 void compute_grid_point(const ShLights& lights, const ShScheme& scheme, int bands, vec3 x, float step,
-                        float* out);
+                        float* out, float* straight = nullptr);
 
 class ShGrid {
  public:
