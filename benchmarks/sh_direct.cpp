@@ -217,7 +217,7 @@ void trees(const std::string& file) {
     return times[1];
   };
   for (const ShScheme& scheme : {kGradients, kMixed})
-    for (int side = 8; side <= 96; side = side * 5 / 4 + 1) {
+    for (int side = 8; side <= 160; side = side * 5 / 4 + 1) {
       ShGrid grid;
       const double seconds = median_of_three([&] {
         const vec3 extent = box.high - box.low;

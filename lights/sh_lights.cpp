@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "sh/light_batch_hessian.h"
-#include "sh/simple_light_batch.h"
 
 namespace zonal {
 
@@ -15,6 +14,20 @@ void ShLights::Arrays::add(vec3 position, vec3 value) {
 sh::LightArrays<float> ShLights::Arrays::caps() const {
   return {count(),  x.data(),      y.data(),
           z.data(), radius.data(), {colour[0].data(), colour[1].data(), colour[2].data()}};
+}
+
+sh::DiracArrays<float> ShLights::Arrays::diracs() const {
+  return {count(),
+          x.data(),
+          y.data(),
+          z.data(),
+          {colour[0].data(), colour[1].data(), colour[2].data()},
+          nullptr,
+          axis_x.data(),
+          axis_y.data(),
+          axis_z.data(),
+          cos_inner.data(),
+          cos_outer.data()};
 }
 
 namespace {
@@ -84,21 +97,8 @@ void ShLights::all(int bands, vec3 x, float* L, float* gradient, bool spheres) c
     else
       sh::accumulate_lights(bands, options_.shape, x, spheres_.caps(), L);
   }
-  const auto diracs = [](const Arrays& a) {
-    return sh::DiracArrays<float>{a.count(),
-                                  a.x.data(),
-                                  a.y.data(),
-                                  a.z.data(),
-                                  {a.colour[0].data(), a.colour[1].data(), a.colour[2].data()},
-                                  nullptr,
-                                  a.axis_x.data(),
-                                  a.axis_y.data(),
-                                  a.axis_z.data(),
-                                  a.cos_inner.data(),
-                                  a.cos_outer.data()};
-  };
-  if (points_.count() > 0) sh::accumulate_point_lights(bands, x, diracs(points_), L, gradient);
-  if (spots_.count() > 0) sh::accumulate_spot_lights(bands, x, diracs(spots_), L, gradient);
+  if (points_.count() > 0) sh::accumulate_point_lights(bands, x, points_.diracs(), L, gradient);
+  if (spots_.count() > 0) sh::accumulate_spot_lights(bands, x, spots_.diracs(), L, gradient);
   if (exact_.count() > 0) exact_.accumulate(bands, x, options_.tolerance, L, gradient);
   if (triangles_.spheres.count() == 0) return;
   if (options_.polygons == ShLightOptions::Polygons::main)

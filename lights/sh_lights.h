@@ -18,6 +18,7 @@
 
 #include "lights/light.h"
 #include "sh/light_batch.h"
+#include "sh/simple_light_batch.h"
 #include "sh/triangle_batch.h"
 #include "sh/triangle_spheres.h"
 
@@ -37,6 +38,14 @@ struct ShLightOptions {
   float tolerance = 1e-3f;
 };
 
+/// A reflection in the terms of the zonal product: weights of the Legendre sums.
+struct ShZonalLobe {
+  vec3 normal{0, 0, 1}, axis{0, 0, 1};  ///< unit, world
+  int bands = 1;
+  const float *cosine = nullptr,
+              *lobe = nullptr;  ///< (2l+1)/4pi times the integral of P_l times cosine or lobe
+};
+
 class ShLights {
  public:
   ShLights() = default;
@@ -49,9 +58,15 @@ class ShLights {
   void coefficients(int bands, vec3 x, float* L) const;
   /// Also gradient[(c * 3 + axis) * sh::count(bands) + i], with respect to x.
   void gradient(int bands, vec3 x, float* L, float* gradient) const;
-  /// Also hessian[(c * 6 + k) * sh::count(bands) + i], second derivatives xx, xy, xz, yy, yz, zz: of spheres in closed
-  /// form, of all others by differences of gradients over `step` metres.
+  /// Also hessian[(c * 6 + k) * sh::count(bands) + i], second derivatives xx, xy, xz, yy, yz, zz: of spheres
+  /// in closed form, of all others by differences of gradients over `step` metres.
   void hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian) const;
+
+  /// The zonal product (Eq. 5.14, Sec. 5.2.7) with all lights that have a place: their irradiance, and their
+  /// light times lobe times the cosine towards their middle. Triangles are spheres: not for Polygons::exact.
+  void zonal(vec3 x, const ShZonalLobe& lobe, vec3* diffuse, vec3* specular) const;
+  /// The coefficients of all others: parallel light and environment.
+  void fixed(int bands, float* L) const;
 
  private:
   /// A structure of arrays; `radiance` of spheres and triangles, intensity of points and spots.
@@ -60,6 +75,7 @@ class ShLights {
     int count() const { return static_cast<int>(x.size()); }
     void add(vec3 position, vec3 value);
     sh::LightArrays<float> caps() const;
+    sh::DiracArrays<float> diracs() const;
   };
   /// Triangles as spheres (Sec. 4.2).
   struct Triangles {
@@ -73,6 +89,7 @@ class ShLights {
   float split_error_of(const sh::TriangleSphere<float>&) const;
   void add_environment(const EnvironmentLight&);
   void all(int bands, vec3 x, float* L, float* gradient, bool spheres = true) const;
+  sh::LightArrays<float> facing_spheres(vec3 x, float* weighted) const;
   void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const;
   void triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const;
 

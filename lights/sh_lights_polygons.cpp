@@ -74,42 +74,37 @@ float ShLights::split_error_of(const sh::TriangleSphere<float>& shape) const {
   return worst;
 }
 
-/// (Eq. 4.9, 4.10): spheres whose radiance is weighted by the cosine towards x, so that the kernels of
-/// spheres do the work: the cosine is a factor of the colours, and its gradient times the coefficients is the
-/// light of three more sets of colours.
-void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const {
+/// (Eq. 4.9, 4.10): spheres whose radiance is weighted by the cosine towards x, so that the kernel of spheres
+/// does the work; it takes the cosine's gradient (Eq. 4.11) over the cosine. `weighted`: 6 numbers a
+/// triangle.
+sh::LightArrays<float> ShLights::facing_spheres(vec3 x, float* weighted) const {
   const Arrays& s = triangles_.spheres;
   const size_t count = s.x.size();
-  const int sets = gradient ? 4 : 1;
-  thread_local std::vector<float> scratch;
-  scratch.resize(count * 3 * sets);
-  const auto colour = [&](int set, int c) { return scratch.data() + (size_t(set) * 3 + c) * count; };
+  const auto row = [&](int i) { return weighted + size_t(i) * count; };
   for (size_t k = 0; k < count; ++k) {
     const vec3 w = x - vec3(s.x[k], s.y[k], s.z[k]), n(s.axis_x[k], s.axis_y[k], s.axis_z[k]);
     const float d2 = glm::dot(w, w), inverse = d2 > 0 ? 1 / std::sqrt(d2) : 0.0f;
     const float cosine = glm::dot(n, w) * inverse;
     const float side = cosine > 0 ? 1.0f : triangles_.two_sided[k] ? -1.0f : 0.0f;
-    for (int c = 0; c < 3; ++c) colour(0, c)[k] = s.colour[c][k] * side * cosine;
-    if (!gradient) continue;
-    const vec3 turn = (n - w * (cosine * inverse)) * (side * inverse);  // (Eq. 4.11), for x
-    for (int axis = 0; axis < 3; ++axis)
-      for (int c = 0; c < 3; ++c) colour(1 + axis, c)[k] = s.colour[c][k] * turn[axis];
+    // In its plane a triangle is black, but its slope is not: the smallest cosine whose inverse is a number.
+    const float facing = std::max(side * cosine, side == 0 ? 0.0f : 1e-15f);
+    for (int c = 0; c < 3; ++c) row(c)[k] = s.colour[c][k] * facing;
+    const vec3 turn = side == 0 ? vec3(0) : (n - w * (cosine * inverse)) * (side * inverse / facing);
+    for (int axis = 0; axis < 3; ++axis) row(3 + axis)[k] = turn[axis];
   }
   sh::LightArrays<float> caps = s.caps();
-  const auto with = [&](int set) {
-    for (int c = 0; c < 3; ++c) caps.radiance[c] = colour(set, c);
-    return caps;
-  };
-  if (!gradient) return sh::accumulate_lights(bands, sh::LightShape::sphere, x, with(0), L);
-  sh::accumulate_lights_gradient(bands, sh::LightShape::sphere, x, with(0), L, gradient);
-  const int n = sh::count(bands);
-  thread_local std::vector<float> turned;
-  for (int axis = 0; axis < 3; ++axis) {
-    turned.assign(3 * size_t(n), 0.0f);
-    sh::accumulate_lights(bands, sh::LightShape::sphere, x, with(1 + axis), turned.data());
-    for (int c = 0; c < 3; ++c)
-      for (int i = 0; i < n; ++i) gradient[(c * 3 + axis) * n + i] += turned[c * n + i];
-  }
+  for (int i = 0; i < 3; ++i) caps.radiance[i] = row(i), caps.slope[i] = row(3 + i);
+  return caps;
+}
+
+void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const {
+  thread_local std::vector<float> weighted;
+  weighted.resize(6 * triangles_.spheres.x.size());
+  const sh::LightArrays<float> caps = facing_spheres(x, weighted.data());
+  if (gradient)
+    sh::accumulate_lights_gradient(bands, sh::LightShape::sphere, x, caps, L, gradient);
+  else
+    sh::accumulate_lights(bands, sh::LightShape::sphere, x, caps, L);
 }
 
 void ShLights::triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const {

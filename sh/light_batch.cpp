@@ -119,7 +119,8 @@ void project_all(int bands, LightShape shape, const Vec3<T>& x, const LightArray
 }
 
 /// Adds a block to `lanes`: 3 or 12 lane sums a coefficient.
-template <class T, int W, bool kGradient>
+/// kVaries: the lights' radiance has slopes.
+template <class T, int W, bool kGradient, bool kVaries>
 void accumulate_block(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights, int first,
                       Lanes<T, W>* lanes) {
   using V = Lanes<T, W>;
@@ -129,10 +130,14 @@ void accumulate_block(int bands, LightShape shape, const Vec3<T>& p, const Light
   V gain[kMaxBands], growth[kMaxBands], colour[3];
   seen.gains(bands, d.sign, gain, kGradient ? growth : nullptr);
   for (int k = 0; k < 3; ++k) colour[k] = load_lanes<T, W>(lights.radiance[k] + first, filled);
+  V slope[3];
+  if constexpr (kVaries)
+    for (int k = 0; k < 3; ++k) slope[k] = load_lanes<T, W>(lights.slope[k] + first, filled);
 
   constexpr int kSums = kGradient ? 12 : 3;
   const auto add = [&](int i, V value, V gx, V gy, V gz) {
     V* sum = lanes + static_cast<size_t>(i) * kSums;
+    if constexpr (kVaries) gx += value * slope[0], gy += value * slope[1], gz += value * slope[2];
     for (int k = 0; k < 3; ++k) {
       sum[k] += colour[k] * value;
       if constexpr (kGradient) {
@@ -170,7 +175,10 @@ void accumulate(int bands, LightShape shape, const Vec3<T>& p, const LightArrays
   const int n = count(bands);
   lanes.assign(static_cast<size_t>(n) * kSums, V{});
   for (int first = 0; first < lights.count; first += kWidth) {
-    accumulate_block<T, kWidth, kGradient>(bands, shape, p, lights, first, lanes.data());
+    if (kGradient && lights.slope[0])
+      accumulate_block<T, kWidth, kGradient, true>(bands, shape, p, lights, first, lanes.data());
+    else
+      accumulate_block<T, kWidth, kGradient, false>(bands, shape, p, lights, first, lanes.data());
   }
   for (int i = 0; i < n; ++i) {
     const V* v = &lanes[static_cast<size_t>(i) * kSums];

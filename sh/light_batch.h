@@ -21,6 +21,9 @@ struct LightArrays {
   const T *x = nullptr, *y = nullptr, *z = nullptr;  ///< centres
   const T* radius = nullptr;
   const T* radiance[3] = {nullptr, nullptr, nullptr};  ///< red, green, blue; for sums alone
+  /// Where radiance depends on x (a factor of it, the same for all colours): the gradient of its logarithm
+  /// with respect to x, 1/m. Null: it does not. For accumulate_lights_gradient alone.
+  const T* slope[3] = {nullptr, nullptr, nullptr};
 };
 
 /// L[i * lights.count + k] = coefficient i of light k of radiance 1.

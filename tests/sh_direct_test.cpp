@@ -185,6 +185,38 @@ TEST(ShDirect, every_way_to_shade_agrees_on_what_it_shares) {
   }
 }
 
+TEST(ShDirect, the_zonal_product_is_the_full_one_on_lambert_and_near_it_on_lobes) {
+  // Lambert's F' is zonal: both are the same series. On a lobe the cosine at a small light's middle is nearly
+  // the truth.
+  const char* kOnly =
+      R"({"camera": {"position": [0, 3, 5], "look_at": [0, 0.4, 0], "vertical_fov": 40, "resolution": [32, 24]},
+    "materials": [{"name": "m", %s}],
+    "objects": [{"name": "floor", "type": "quad", "corner": [-4, 0, 4], "edges": [[8, 0, 0], [0, 0, -8]], "material": "m"},
+                {"name": "ball", "type": "sphere", "center": [0.8, 0.7, 0], "radius": 0.7, "material": "m"}],
+    "lights": [{"type": "sphere", "center": [2, 2.5, 1], "radius": 0.2, "radiance": [80, 20, 20]},
+               {"type": "quad", "corner": [-1, 3, 3], "edges": [[0.4, 0, 0], [0, 0.2, 0.2]], "radiance": 30, "two_sided": true},
+               {"type": "point", "position": [-2, 2, 0], "intensity": 5},
+               {"type": "spot", "position": [1, 5, 0], "look_at": [0, 0, 0], "intensity": 10, "inner": 5, "outer": 30},
+               {"type": "environment", "radiance": 0.1}]})";
+  const auto scene_with = [&](const std::string& material) {
+    std::string text = kOnly;
+    return test::scene_from(text.replace(text.find("%s"), 2, material));
+  };
+  const std::string shared = R"("bands": 7, "light_bands": 7, "polygons": "main")";
+  const Scene matt = scene_with(R"("type": "lambert", "albedo": 0.6)");
+  // Sums in another order, in float.
+  EXPECT_LT(relative_rmse(sh_image(matt, "{" + shared + R"(, "product": "zonal"})"),
+                          sh_image(matt, "{" + shared + "}")),
+            1e-5);
+  const Scene satin = scene_with(R"("type": "metallic_roughness", "metallic": 0.5, "roughness": 0.7)");
+  const double off = relative_rmse(sh_image(satin, "{" + shared + R"(, "product": "zonal"})"),
+                                   sh_image(satin, "{" + shared + "}"));
+  fmt::print("zonal product on satin: {:.4f} off\n", off);
+  EXPECT_LT(off, 0.1);
+  EXPECT_GT(off, 1e-4);
+  EXPECT_THROW(sh_image(satin, R"({"product": "zonal", "at": "grid"})"), SceneError);
+}
+
 TEST(ShDirect, the_automatic_window_leaves_nothing_negative) {
   // Small lights from all sides of a satin floor: the lobe's series rings where the lobe is dark, and through
   // the positive kernel it does not.

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "integrators/sh_direct/sh_occlusion.h"
+#include "materials/zonal_lobes.h"
 
 namespace zonal {
 
@@ -55,6 +56,11 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   ShLightOptions options;
   options.bands = receiver_.most_light_bands();
   options.polygons = params_.polygons;
+  // The zonal product knows caps alone.
+  const bool zonal = params_.product == ShDirectParams::Product::zonal;
+  if (zonal) refuse_lobeless(scene);
+  if (zonal && params_.polygons == ShLightOptions::Polygons::exact)
+    options.polygons = ShLightOptions::Polygons::main;
   options.split_error = params_.split_error, options.split_distance = params_.split_distance;
   options.tolerance = params_.tolerance;
   options.shape =
@@ -74,6 +80,20 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   stats.numbers["projection_seconds"] = spent.count();
   stats.numbers["projected_lights"] = lights_;
   stats.numbers["light_bands"] = receiver_.most_light_bands();
+}
+
+void ShDirectIntegrator::refuse_lobeless(const Scene& scene) const {
+  if (params_.at != ShDirectParams::At::pixel)
+    throw SceneError(where_ +
+                     ": /product: found \"zonal\" with \"at\" on a grid, expected \"at\": \"pixel\": what is "
+                     "interpolated is no longer symmetric");
+  for (const auto& material : scene.materials()) {
+    const Bsdf bsdf = material->at(vec2(0.5f));
+    const std::string reason = bsdf.kind == BsdfKind::lambert ? "" : zonal_lobe_refusal(bsdf);
+    if (!reason.empty())
+      throw SceneError(where_ + ": /product: found \"zonal\", but the material \"" + material->name + "\" " +
+                       reason);
+  }
 }
 
 void ShDirectIntegrator::refuse_too_large_a_grid() const {
@@ -180,6 +200,7 @@ void ShDirectIntegrator::build_octree(Group& group, const ShSeen& seen, const St
 vec3 ShDirectIntegrator::reflected(const Group& group, const Surface& s, const Bsdf& bsdf,
                                    bool exactly) const {
   using At = ShDirectParams::At;
+  if (params_.product == ShDirectParams::Product::zonal) return receiver_.shade_zonal(s, bsdf, group.lights);
   const int bands = receiver_.light_bands(s, bsdf);
   float L[3 * kMostShBands * kMostShBands];
   const bool found =

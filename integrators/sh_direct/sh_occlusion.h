@@ -8,7 +8,7 @@
 
 namespace zonal {
 
-/// (SHD-9) Shadowed over unshadowed reflected light of the lights `selector` chooses from, per colour in
+/// (SHD-10) Shadowed over unshadowed reflected light of the lights `selector` chooses from, per colour in
 /// [0,1], both sums from the same `rays` samples, stratified over the lights. 1 where no sample reflects
 /// anything.
 vec3 shadow_ratio(const Scene& scene, const LightSelector& selector, const Surface& s, const Bsdf& bsdf,

@@ -42,6 +42,9 @@ void ShReceiverParams::visit(ParamVisitor& v) {
                     "of the receiver's BRDF; auto: those its material keeps at that elevation");
   v.integer_or_auto("light_bands", light_bands, {1, kMostShBands}, "bands",
                     "of the lights; auto: as many as the receiver");
+  v.choice(
+      "product", product, {"sh", "zonal"},
+      "sh: light as a whole; zonal: light by light with a diffuse part and one symmetric lobe (at pixel)");
   v.choice("shading", shading, {"table", "cosine", "general", "turned"},
            "table: BRDF with cosine; else light times cosine, then the BRDF: by Eq. 4.6, 2.48 or 4.5");
   v.integer("cosine_bands", cosine_bands, {0, kMostShBands}, "bands",
@@ -71,7 +74,7 @@ ShReceiver::ShReceiver(const ShReceiverParams& params,
   if (table) most_light_bands_ = std::min(most_light_bands_, needed);
 
   // The first lobe of its kind makes a table of them: a tenth of a second that belongs here.
-  if (!table)
+  if (!table || params.product == ShReceiverParams::Product::zonal)
     for (const auto& material : materials) {
       const Bsdf bsdf = material->at(vec2(0.5f));
       if (has_zonal_lobe(bsdf)) zonal_brdf(bsdf, prepare(bsdf, vec3(0, 0, 1)), 1);
@@ -232,6 +235,31 @@ vec3 ShReceiver::by_product(const Surface& s, const Bsdf& bsdf, int bands, const
         sum[c] +=
             weight(l) * weighted[3 * sh::index(l, m) + c] * table[c * stride + sh_index(l, m, mirrored)];
   return sum;
+}
+
+/// (SHD-9) each light's cap against the lobe about its axis, with the cosine of the light's middle
+/// (Sec. 5.2.7).
+vec3 ShReceiver::shade_zonal(const Surface& s, const Bsdf& bsdf, const ShLights& lights) const {
+  const vec3 w_out = s.shading.to_local(s.w_out);
+  const int bands = std::min(most_light_bands_, bands_of(s, bsdf, w_out));
+  const float* weights = windows_[bands].data();
+  ZonalBrdf z;
+  if (bsdf.kind == BsdfKind::lambert)
+    z.diffuse = bsdf.diffuse * kInvPi;
+  else
+    z = zonal_brdf(bsdf, prepare(bsdf, w_out), bands);
+  // cosine_ is sqrt(4pi/(2l+1)) times a zonal coefficient; the lights' gains lack sqrt((2l+1)/4pi).
+  float cosine[kMostShBands], lobe[kMostShBands];
+  for (int l = 0; l < bands; ++l) {
+    const float norm = std::sqrt(float(2 * l + 1) / (4 * kPi));
+    cosine[l] = cosine_[l] * norm * norm * weights[l], lobe[l] = z.lobe[l] * norm * weights[l];
+  }
+  vec3 irradiance, reflected;
+  lights.zonal(s.position, {s.shading.z, s.shading.to_world(z.axis), bands, cosine, lobe}, &irradiance,
+               &reflected);
+  std::vector<float> fixed(3 * size_t(sh::count(bands)));
+  lights.fixed(bands, fixed.data());
+  return z.diffuse * irradiance + z.specular * reflected + by_table(s, bsdf, bands, fixed.data());
 }
 
 }  // namespace zonal

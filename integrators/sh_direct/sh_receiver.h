@@ -13,6 +13,7 @@
 #include "core/params.h"
 #include "core/scene.h"
 #include "core/stop.h"
+#include "lights/sh_lights.h"
 #include "materials/sh_materials.h"
 
 namespace zonal {
@@ -22,8 +23,10 @@ struct ShReceiverParams {
   enum class Diffuse { same, irradiance };
   enum class Window { none, hann, lanczos, hamming, automatic };
   enum class Windowed { light, material };
+  enum class Product { sh, zonal };
 
   int bands = 9, light_bands = 5;  ///< or kAuto
+  Product product = Product::sh;
   Shading shading = Shading::table;
   int cosine_bands = 0;
   Diffuse diffuse = Diffuse::same;
@@ -48,6 +51,8 @@ class ShReceiver {
   int most_light_bands() const { return most_light_bands_; }
   /// Radiance towards the camera, W m^-2 sr^-1; negative where the bands ring. `L` has `bands` bands.
   vec3 shade(const Surface&, const Bsdf&, int bands, const float* L) const;
+  /// The same by the zonal product, straight from the lights.
+  vec3 shade_zonal(const Surface&, const Bsdf&, const ShLights& lights) const;
 
  private:
   int bands_of(const Surface&, const Bsdf&, vec3 w_out) const;
