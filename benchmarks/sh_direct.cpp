@@ -79,8 +79,8 @@ Lights square(int side) {
     for (int column = 0; column < side; ++column) {
       const float h = 2.0f / float(side), x = -1 + h * float(column), y = -1 + h * float(row);
       const vec3 a(x, y, -1.5f), b(x + h, y, -1.5f), c(x + h, y + h, -1.5f), d(x, y + h, -1.5f);
-      lights.push_back(std::make_unique<MeshLight>(std::vector<MeshLight::Triangle>{{a, b, c}, {a, c, d}},
-                                                   vec3(float(row), float(column), 1), true));
+      lights.push_back(std::make_unique<TriangleLight>(std::vector<MeshLight::Triangle>{{a, b, c}, {a, c, d}},
+                                                       vec3(float(row), float(column), 1), true));
     }
   return lights;
 }

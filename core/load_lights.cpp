@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/loading.h"
+#include "lights/shaped_lights.h"
 
 namespace zonal {
 
@@ -112,7 +113,7 @@ std::unique_ptr<Light> environment_picture(Loading& loading, Fields& fields, con
     loading.parts.notes.push_back(fmt::format(
         "{}: {} texels that are negative or not finite were replaced by the nearest allowed value", where,
         replaced));
-  return std::make_unique<EnvironmentLight>(image.width, image.height, std::move(texels), rotation);
+  return std::make_unique<PictureLight>(image.width, image.height, std::move(texels), rotation);
 }
 
 std::unique_ptr<Light> environment(Loading& loading, Fields& fields) {
@@ -128,7 +129,7 @@ std::unique_ptr<Light> environment(Loading& loading, Fields& fields) {
   if (!constant) return environment_picture(loading, fields, file, scale, rotation);
   if (scaled || turned)
     fields.fail(scaled ? "scale" : "rotation", "found beside \"radiance\", expected it only with \"file\"");
-  return std::make_unique<EnvironmentLight>(1, 1, std::vector<vec3>{radiance}, 0.0f);
+  return std::make_unique<PictureLight>(1, 1, std::vector<vec3>{radiance}, 0.0f);
 }
 
 enum Kind {
@@ -218,7 +219,7 @@ void add_shape(Loading& loading, ShapeData shape, const std::optional<Emission>&
       for (const uvec3 t : shape.mesh.triangles)
         triangles.push_back(
             {shape.mesh.positions[t.x], shape.mesh.positions[t.y], shape.mesh.positions[t.z]});
-      light = std::make_unique<MeshLight>(
+      light = std::make_unique<TriangleLight>(
           std::move(triangles), emission->radiance_from(surface_area(shape.mesh)), emission->two_sided);
     }
     light->name = shape.name;

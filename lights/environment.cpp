@@ -98,23 +98,6 @@ EnvironmentLight::EnvironmentLight(int width, int height, std::vector<vec3> texe
   sky.largest_irradiance = static_cast<float>(0.5 * (glm::length(vector) + luminous_fluence));
 }
 
-int EnvironmentLight::width() const {
-  return impl_->width;
-}
-
-int EnvironmentLight::height() const {
-  return impl_->height;
-}
-
-vec3 EnvironmentLight::texel(int row, int column) const {
-  return impl_->texel(row, column);
-}
-
-vec3 EnvironmentLight::direction(double x, double y) const {
-  const double theta = M_PI * y, azimuth = 2 * M_PI * (x - 0.5) - double(impl_->rotation);
-  return vec3(std::sin(theta) * std::sin(azimuth), std::cos(theta), -std::sin(theta) * std::cos(azimuth));
-}
-
 void EnvironmentLight::set_scene_bounds(const BoundingSphere& bounds) {
   impl_->bounds = bounds;
 }

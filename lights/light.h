@@ -150,9 +150,6 @@ class MeshLight : public Light {
   EmissionSample sample_emission(vec2, vec2) const override;
   float importance(vec3 x) const override;
   float area() const;
-  std::vector<Triangle> triangles() const;  ///< those with an area, counter-clockwise seen from the lit side
-  vec3 emission() const;                    ///< radiance, W m^-2 sr^-1
-  bool two_sided() const;
 
  private:
   struct Impl;
@@ -174,11 +171,6 @@ class EnvironmentLight : public Light {
   EmissionSample sample_emission(vec2, vec2) const override;
   float importance(vec3 x) const override;
   void set_scene_bounds(const BoundingSphere& b) override;
-  int width() const;   ///< of the picture, texels
-  int height() const;
-  vec3 texel(int row, int column) const;
-  /// The direction of the square's point (x right, y down, both in [0,1]); (ENV-1) backwards.
-  vec3 direction(double x, double y) const;
 
  private:
   struct Impl;

@@ -70,21 +70,6 @@ float MeshLight::area() const {
   return impl_->area;
 }
 
-std::vector<MeshLight::Triangle> MeshLight::triangles() const {
-  std::vector<Triangle> result;
-  for (const Impl::Face& f : impl_->faces)
-    if (f.density > 0) result.push_back({f.a, f.a + f.ab, f.a + f.ac});
-  return result;
-}
-
-vec3 MeshLight::emission() const {
-  return impl_->emission;
-}
-
-bool MeshLight::two_sided() const {
-  return impl_->two_sided;
-}
-
 vec3 MeshLight::power() const {
   return impl_->emission * (kPi * impl_->area * (impl_->two_sided ? 2.0f : 1.0f));
 }

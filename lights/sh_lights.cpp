@@ -1,6 +1,7 @@
 #include "lights/sh_lights.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "sh/light_batch_hessian.h"
 
@@ -49,7 +50,7 @@ ShLights::ShLights(const std::vector<const Light*>& lights, const ShLightOptions
     if (const auto* sphere = dynamic_cast<const SphereLight*>(light)) {
       spheres_.add(sphere->center, sphere->emission);
       spheres_.radius.push_back(sphere->radius);
-    } else if (const auto* mesh = dynamic_cast<const MeshLight*>(light)) {
+    } else if (const auto* mesh = dynamic_cast<const TriangleLight*>(light)) {
       add_mesh(*mesh);
     } else if (const auto* point = dynamic_cast<const PointLight*>(light)) {
       points_.add(point->position, point->intensity);
@@ -68,8 +69,10 @@ ShLights::ShLights(const std::vector<const Light*>& lights, const ShLightOptions
                                        &sun->direction.z,
                                        {&sun->irradiance.x, &sun->irradiance.y, &sun->irradiance.z}};
       sh::accumulate_directional_lights(options_.bands, one, fixed_.data());
-    } else if (const auto* sky = dynamic_cast<const EnvironmentLight*>(light)) {
+    } else if (const auto* sky = dynamic_cast<const PictureLight*>(light)) {
       add_environment(*sky);
+    } else {
+      assert(!"a light without a projection");
     }
   }
 }

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "lights/light.h"
+#include "lights/shaped_lights.h"
 #include "sh/light_batch.h"
 #include "sh/simple_light_batch.h"
 #include "sh/triangle_batch.h"
@@ -84,10 +84,10 @@ class ShLights {
     std::vector<uint8_t> two_sided;
   };
 
-  void add_mesh(const MeshLight&);
+  void add_mesh(const TriangleLight&);
   void add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth);
   float split_error_of(const sh::TriangleSphere<float>&) const;
-  void add_environment(const EnvironmentLight&);
+  void add_environment(const PictureLight&);
   void all(int bands, vec3 x, float* L, float* gradient, bool spheres = true) const;
   sh::LightArrays<float> facing_spheres(vec3 x, float* weighted) const;
   void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const;

@@ -10,9 +10,9 @@ namespace zonal {
 
 /// Sum over texels of radiance times the integral of each harmonic over the texel: by its middle, cut in
 /// parts where the picture is coarse against the harmonics. A part of size h is off by at most (l h)^2/24.
-void ShLights::add_environment(const EnvironmentLight& sky) {
+void ShLights::add_environment(const PictureLight& sky) {
   const int bands = options_.bands, n = sh::count(bands);
-  const int width = sky.width(), height = sky.height();
+  const int width = sky.width, height = sky.height;
   if (width == 1 && height == 1) {
     const vec3 radiance = sky.texel(0, 0);
     for (int c = 0; c < 3; ++c) fixed_[size_t(c) * n] += radiance[c] * 3.5449077018110318f;  // 2 sqrt(pi)

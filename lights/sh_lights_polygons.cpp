@@ -26,12 +26,12 @@ sh::TriangleMethod method_of(ShLightOptions::Polygons polygons) {
 
 }  // namespace
 
-void ShLights::add_mesh(const MeshLight& light) {
-  for (const MeshLight::Triangle& t : light.triangles())
+void ShLights::add_mesh(const TriangleLight& light) {
+  for (const MeshLight::Triangle& t : light.triangles)
     if (options_.polygons == ShLightOptions::Polygons::exact)
-      exact_.add(t.a, t.b, t.c, light.emission(), light.two_sided());
+      exact_.add(t.a, t.b, t.c, light.emission, light.two_sided);
     else
-      add_triangle(t.a, t.b, t.c, light.emission(), light.two_sided(), 0);
+      add_triangle(t.a, t.b, t.c, light.emission, light.two_sided, 0);
 }
 
 void ShLights::add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth) {

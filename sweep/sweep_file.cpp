@@ -141,6 +141,15 @@ std::vector<json> combinations(const json& set, json* lists) {
   return all;
 }
 
+/// What a method is scored against. Of one whose transport is direct light alone, `occlusion` is that of the camera's
+/// surface.
+json reference_of(const IntegratorRow& row, const json& parameters) {
+  if (!row.transport.starts_with("direct,")) return matching_reference(parameters);
+  json settings{{"max_bounces", 0}};
+  if (parameters.value("occlusion", "") == "none") settings["direct_occlusion"] = "none";
+  return settings;
+}
+
 void read_methods(SweepPlan& plan, Fields& fields) {
   const json& list = fields.require("methods", "a list of methods");
   const auto values = read_array(list, fields.at("methods"), "methods");
@@ -175,7 +184,7 @@ void read_methods(SweepPlan& plan, Fields& fields) {
       for (const auto& [key, value] : method.varied.items())
         method.id += fmt::format(" {}={}", key, value_text(value));
       row.make(chosen, where_of(where, "set"), &method.parameters);
-      method.reference = matching_reference(method.integrator, method.parameters);
+      method.reference = reference_of(row, method.parameters);
       if (!ids.insert(method.id).second)
         throw SceneError(fmt::format("{}: found {} again, expected a \"label\" that tells it apart", where,
                                      in_quotes(method.id)));
@@ -268,14 +277,8 @@ std::string search_parameter(const SweepMethod& method, const CellBudget& budget
   return budget.search.empty() && method.parameters.contains("lights") ? "lights" : "passes";
 }
 
-json matching_reference(const std::string& integrator, const json& parameters) {
+json matching_reference(const json& parameters) {
   json settings = json::object();
-  // Direct light alone: `occlusion` is that of the camera's surface.
-  if (find_integrator(integrator, "").transport.starts_with("direct,")) {
-    settings["max_bounces"] = 0;
-    if (parameters.value("occlusion", "") == "none") settings["direct_occlusion"] = "none";
-    return settings;
-  }
   // `path` and its like say what they solve in the same words.
   for (const char* key : {"min_bounces", "max_bounces", "direct_occlusion"})
     if (parameters.contains(key)) settings[key] = parameters[key];

@@ -80,8 +80,7 @@ nlohmann::json method_settings(const SweepScene& scene, const SweepMethod& metho
 std::string search_parameter(const SweepMethod& method, const CellBudget& budget);
 
 /// Settings of `path` that solve what a method with these parameters solves: its bounces, with or without
-/// direct light and occlusion (DESIGN: a method is scored against the transport it solves). A method whose
-/// transport in the table starts with "direct," has no bounces.
-nlohmann::json matching_reference(const std::string& integrator, const nlohmann::json& parameters);
+/// direct light and occlusion (DESIGN: a method is scored against the transport it solves).
+nlohmann::json matching_reference(const nlohmann::json& parameters);
 
 }  // namespace zonal

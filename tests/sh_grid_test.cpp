@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "tests/light_support.h"
+#include "tests/shaped_light_support.h"
 #include "tests/support.h"
 
 namespace zonal {
@@ -25,8 +26,8 @@ ShLights lights_around(int bands) {
     if (glm::length(out) < 0.8f) continue;
     lights.push_back(std::make_unique<SphereLight>(test::ball(center, 0.1f + 0.1f * std::abs(number(bits)))));
   }
-  lights.push_back(
-      std::make_unique<MeshLight>(test::quad(vec3(-1, 2, -1), vec3(2, 0, 0), vec3(0, 0, 2), true)));
+  lights.push_back(std::make_unique<TriangleLight>(
+      test::shaped_quad(vec3(-1, 2, -1), vec3(2, 0, 0), vec3(0, 0, 2), true)));
   return ShLights(lights, {.bands = bands});
 }
 

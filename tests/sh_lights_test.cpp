@@ -8,6 +8,7 @@
 #include "sh/simple_lights.h"
 #include "sh/sphere_light.h"
 #include "tests/light_support.h"
+#include "tests/shaped_light_support.h"
 
 namespace zonal {
 namespace {
@@ -49,7 +50,7 @@ Lights mixed() {
   point.position = vec3(0, 1.5f, 2), point.intensity = vec3(3, 2, 1);
   put(lights, point);
   put(lights, spot());
-  put(lights, test::quad(vec3(1, 2, 1), vec3(0.9f, 0, 0.1f), vec3(0, 0, 0.7f)));
+  put(lights, test::shaped_quad(vec3(1, 2, 1), vec3(0.9f, 0, 0.1f), vec3(0, 0, 0.7f)));
   return lights;
 }
 
@@ -83,7 +84,7 @@ TEST(ShLights, sum_what_each_light_sends_alone) {
 
 TEST(ShLights, fewer_bands_are_the_first_of_more) {
   Lights lights = mixed();
-  put(lights, test::sunny_sky(0.3f));
+  put(lights, PictureLight(2, 2, {vec3(1), vec3(2), vec3(3), vec3(4)}, 0.3f));
   const ShLights projected(lights, {.bands = 8});
   const std::vector<float> many = coefficients(projected, 8, vec3(0.2f)),
                            few = coefficients(projected, 3, vec3(0.2f));
@@ -123,8 +124,8 @@ TEST(ShLights, gradients_are_those_of_differences) {
 
 TEST(ShLights, one_sided_lights_are_black_from_behind) {
   Lights one, two;
-  put(one, test::quad(vec3(-1, 1, -1), vec3(2, 0, 0), vec3(0, 0, 2)));
-  put(two, test::quad(vec3(-1, 1, -1), vec3(2, 0, 0), vec3(0, 0, 2), true));
+  put(one, test::shaped_quad(vec3(-1, 1, -1), vec3(2, 0, 0), vec3(0, 0, 2)));
+  put(two, test::shaped_quad(vec3(-1, 1, -1), vec3(2, 0, 0), vec3(0, 0, 2), true));
   for (const Polygons polygons : {Polygons::exact, Polygons::main, Polygons::alternative}) {
     const ShLights back(one, {.polygons = polygons}), both(two, {.polygons = polygons});
     const vec3 lit(0.3f, 0, 0), dark(0.3f, 2, 0);  // cross(u, v) points down
@@ -146,7 +147,7 @@ TEST(ShLights, the_sky_has_the_moments_of_its_texels) {
     mean += (1 + row) * 2 * M_PI * (c0 - c1), up += (1 + row) * M_PI * (c0 * c0 - c1 * c1);
   }
   Lights lights;
-  put(lights, EnvironmentLight(4, 3, texels, 0.7f));
+  put(lights, PictureLight(4, 3, texels, 0.7f));
   const std::vector<float> L = coefficients(ShLights(lights, {.bands = 4}), 4, vec3(0));
   EXPECT_NEAR(L[0], mean * std::sqrt(0.25 / M_PI), 1e-4);
   // Middles of parts a 32nd of 4 bands high: (h^2/24) with h = pi/126.
@@ -163,7 +164,7 @@ TEST(ShLights, the_sky_has_the_moments_of_its_texels) {
 TEST(ShLights, triangles_are_cut_until_their_spheres_are_good_enough) {
   // A narrow triangle, seen from one metre: aspect 40.
   Lights lights;
-  lights.push_back(std::make_unique<MeshLight>(
+  lights.push_back(std::make_unique<TriangleLight>(
       std::vector<MeshLight::Triangle>{{vec3(-1, 1, 0), vec3(1, 1, 0), vec3(0, 1, 0.05f)}}, vec3(1), true));
   const std::vector<float> exact = coefficients(ShLights(lights, {.bands = 5}), 5, vec3(0));
   const double whole =
@@ -179,7 +180,7 @@ TEST(ShLights, triangles_are_cut_until_their_spheres_are_good_enough) {
 TEST(ShLights, are_finite_wherever_the_point_is) {
   Lights lights;
   put(lights, test::ball(vec3(0), 1));
-  lights.push_back(std::make_unique<MeshLight>(
+  lights.push_back(std::make_unique<TriangleLight>(
       std::vector<MeshLight::Triangle>{{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0.5f, 1e-6f, 0)}}, vec3(1), true));
   PointLight point;
   put(lights, point);

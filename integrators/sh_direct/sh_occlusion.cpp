@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "integrators/direct.h"
+#include "lights/shaped_lights.h"
 
 namespace zonal {
 
@@ -53,13 +54,11 @@ std::optional<vec3> place_of(const Light* light) {
   if (const auto* sphere = dynamic_cast<const SphereLight*>(light)) return sphere->center;
   if (const auto* point = dynamic_cast<const PointLight*>(light)) return point->position;
   if (const auto* spot = dynamic_cast<const SpotLight*>(light)) return spot->position;
-  const auto* mesh = dynamic_cast<const MeshLight*>(light);
-  if (!mesh) return {};
-  const auto triangles = mesh->triangles();
-  if (triangles.empty()) return {};
+  const auto* mesh = dynamic_cast<const TriangleLight*>(light);
+  if (!mesh || mesh->triangles.empty()) return {};
   vec3 sum(0);
-  for (const auto& t : triangles) sum += (t.a + t.b + t.c) / 3.0f;
-  return sum / float(triangles.size());
+  for (const auto& t : mesh->triangles) sum += (t.a + t.b + t.c) / 3.0f;
+  return sum / float(mesh->triangles.size());
 }
 
 struct Group {
