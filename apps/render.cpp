@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/backend.h"
 #include "apps/commands.h"
-#include "core/backend.h"
 #include "core/error.h"
 #include "core/image.h"
 #include "core/machine.h"
@@ -68,7 +68,7 @@ std::string repeat_line(const Options& options, const RenderReport& report) {
 }
 
 int render_command(const Options& options) {
-  check_backend(options.backend, "--backend");
+  const std::unique_ptr<Backend> backend = make_backend(options.backend);
   if (options.passes > 0 && options.seconds > 0) throw SceneError("--passes and --time: expected only one of them");
   LoadOptions load{.frame = options.frame, .materials = material_replacements(options.materials)};
   if (!options.size.empty()) parse_size(options.size, &load.width, &load.height);
@@ -105,7 +105,7 @@ int render_command(const Options& options) {
     picture.metadata["exposure"] = fmt::format("{:.9g}", scene.camera().exposure);
     write_image(fmt::format("{}-{:05}.exr", options.snapshots, so_far.passes()), picture, 1);
   };
-  const RenderReport report = render(scene, *integrator, film, budget, render_options, snapshot,
+  const RenderReport report = backend->render(scene, *integrator, name, film, budget, render_options, snapshot,
                                      [&](const Progress& p) { progress.update(p); });
   progress.finish();
   for (const std::string& warning : report.pass.warnings) fmt::print(stderr, "warning: {}\n", warning);
@@ -121,7 +121,8 @@ int render_command(const Options& options) {
       {"scene", options.scene}, {"integrator", name}, {"parameters", parameters}, {"seed", options.seed},
       {"frame", options.frame}, {"passes", report.passes}, {"resolution", {film.width(), film.height()}},
       {"threads", options.threads > 0 ? options.threads : hardware_threads()},
-      {"version", ZONAL_VERSION}, {"compiler", compiler_name()}, {"cpu", cpu_name()}, {"gpu", nullptr},
+      {"version", ZONAL_VERSION}, {"compiler", compiler_name()}, {"cpu", cpu_name()}, {"gpu", backend->gpu().empty() ? nlohmann::json() : nlohmann::json(backend->gpu())},
+      {"backend", options.backend},
       {"interrupted", report.interrupted}, {"bad_samples", film.bad_samples()},
       {"counters", counters_json(report)}, {"repeat", repeat_line(options, report)}};
   stats["seconds"] = {{"load", load_seconds}, {"begin_pass", report.begin_pass_seconds},
@@ -171,7 +172,7 @@ void add_render(CLI::App& app, int* exit_code) {
   command->add_option("--seed", options->seed, "random seed");
   command->add_option("--frame", options->frame, "frame of a scene with keyframes");
   add_material_option(*command, &options->materials);
-  command->add_option("--backend", options->backend, "cpu");
+  command->add_option("--backend", options->backend, "cpu or gl: who shades");
   command->add_option("-o,--output", options->outputs, "picture to write (.exr or .png); may be given again; none: no picture")
       ->allow_extra_args(false);
   command->add_option("--stats", options->stats, "JSON file for settings, times and counters");

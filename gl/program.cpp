@@ -108,4 +108,8 @@ void Program::set(const char* name, const mat4& v) const {
   glProgramUniformMatrix4fv(id_, place(name), 1, GL_FALSE, &v[0][0]);
 }
 
+void Program::set(const char* name, std::span<const float> v) const {
+  glProgramUniform1fv(id_, place(name), static_cast<GLsizei>(v.size()), v.data());
+}
+
 }  // namespace zonal::gl

@@ -6,6 +6,7 @@
 ///     program.set("first", 0);
 ///     glDispatchCompute(20, 12, 1);
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ class Program {
   void set(const char* name, vec3 value) const;
   void set(const char* name, ivec2 value) const;
   void set(const char* name, const mat4& value) const;
+  void set(const char* name, std::span<const float> values) const;
 
   unsigned id() const { return id_; }
 

@@ -91,6 +91,12 @@ class ManyLights : public Integrator {
   /// The lights of the current pass: what a GPU twin gathers from. With `split` they end with the texels
   /// (VirtualLightSet::parts).
   const VirtualLightSet& light_set() const { return set_; }
+  /// The same as arrays, with the radii the method has given them.
+  const LightArrays& lights() const { return arrays_; }
+  const ManyLightsParams& shared() const { return shared_; }
+  /// A number that differs from pass to pass and seed to seed: what `gather` hashes its own random numbers
+  /// from, with TilePoints::seed and the light's index.
+  uint32_t pass_key() const { return pass_key_; }
 
  protected:
   /// Called when a pass has its lights, before any `gather`: radii, coefficients, whatever a light keeps. May
@@ -138,12 +144,7 @@ class ManyLights : public Integrator {
   /// of them where nothing occludes. Counts the rays in `rays`.
   uint64_t visible(const TilePoints&, int light, uint64_t wanted, int* rays) const;
 
-  const LightArrays& lights() const { return arrays_; }
   const Scene& scene() const { return *scene_; }
-  const ManyLightsParams& shared() const { return shared_; }
-  /// A number that differs from pass to pass and seed to seed: what `gather` hashes its own random numbers
-  /// from, with TilePoints::seed and the light's index.
-  uint32_t pass_key() const { return pass_key_; }
 
  private:
   void trace_lights(const Pass&, int count, const Stop&, PassStats*);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/glsl.h"
 #include "materials/microfacet.h"
 
 namespace zonal {
+#include "materials/sh_layers.glsl"
 
 Bsdf ShLayers::load(const Bsdf& bsdf) {
   Bsdf b = bsdf;
@@ -26,23 +28,12 @@ Bsdf ShLayers::load(const Bsdf& bsdf) {
 }
 
 ShLayers::Weights ShLayers::weights(const Bsdf& b) {
+  static_assert(int(BsdfKind::blinn_phong) == 2 && int(BsdfKind::coated) == 4 &&
+                int(BsdfKind::metallic_roughness) == 5);
+  vec3 x, y, z;
+  sh_layer_weights(static_cast<int>(b.kind), b.specular, b.diffuse, x, y, z);
   Weights w{};
-  for (int c = 0; c < 3; ++c) {
-    const float s = b.specular[c], d = b.diffuse[c];
-    switch (b.kind) {
-      case BsdfKind::metallic_roughness:
-        w[c] = {1 - s - d, s, d};
-        break;
-      case BsdfKind::coated:
-        w[c] = {s - d, d, 0};
-        break;
-      case BsdfKind::blinn_phong:
-        w[c] = {s, d, 0};
-        break;
-      default:
-        w[c][c] = s;
-    }
-  }
+  for (int c = 0; c < 3; ++c) w[c] = {x[c], y[c], z[c]};
   return w;
 }
 
@@ -82,9 +73,8 @@ void ShLayers::add_level(float roughness, std::shared_ptr<const ShMaterial> tabl
 /// Between level and the next; beyond the first and last, those.
 ShLayers::Place ShLayers::place(const Bsdf& b) const {
   if (levels_.size() < 2) return {0, 0};
-  const float roughness = std::sqrt(std::sqrt(b.alpha_x * b.alpha_y));
   const float first = levels_.front().roughness, step = levels_[1].roughness - first;
-  const float x = std::fmin(std::fmax((roughness - first) / step, 0.0f), float(levels_.size() - 1));
+  const float x = sh_layer_place(vec2(b.alpha_x, b.alpha_y), first, step, float(levels_.size()));
   const size_t i = std::min(size_t(x), levels_.size() - 2);
   return {i, x - float(i)};
 }

@@ -27,6 +27,10 @@ class ShLayers {
   /// `bands` can tell what a mixture of colours needs; isotropic tables only.
   void add_level(float roughness, std::shared_ptr<const ShMaterial> table, bool energies);
 
+  int levels() const { return static_cast<int>(levels_.size()); }
+  float roughness(int level) const { return levels_[level].roughness; }
+  const ShMaterial& table(int level) const { return *levels_[level].table; }
+
   bool mirrored() const { return levels_.empty() || levels_[0].table->mirrored(); }
   /// That F' of this mixture needs; of F at most as many.
   int bands(const Bsdf& bsdf, ShTable table, vec3 w_out, float share) const;

@@ -202,6 +202,16 @@ int ShMaterials::look_up(uint32_t material, const Bsdf& bsdf, ShTable table, vec
   return entry.layers.look_up(bsdf, table, w_out, bands, stride, out);
 }
 
+ShMaterials::Tables ShMaterials::tables(uint32_t material) const {
+  const Impl::Entry& entry = impl_->entries[material];
+  if (entry.lambert) return {};
+  if (entry.table) return {Tables::measured, {{0.0f, entry.table.get()}}};
+  Tables result{Tables::layers, {}};
+  for (int i = 0; i < entry.layers.levels(); ++i)
+    result.levels.push_back({entry.layers.roughness(i), &entry.layers.table(i)});
+  return result;
+}
+
 int ShMaterials::max_bands() const {
   return impl_ ? impl_->max_bands : 0;
 }

@@ -45,6 +45,16 @@ class ShMaterials {
   /// As ShMaterial::look_up, for the very point `bsdf` was made at.
   int look_up(uint32_t material, const Bsdf& bsdf, ShTable table, vec3 w_out, int bands, int stride,
               float* out) const;
+  /// What a material's coefficients are made of, for a copy elsewhere (a GPU).
+  struct Tables {
+    enum Kind { lambert, measured, layers } kind = lambert;
+    struct Level {
+      float roughness;  ///< layers with more than one level
+      const ShMaterial* table;
+    };
+    std::vector<Level> levels;  ///< none: lambert, or black
+  };
+  Tables tables(uint32_t material) const;
   /// Of all materials and views.
   int max_bands() const;
   /// What is not as the scene says: one sentence each, naming the material.

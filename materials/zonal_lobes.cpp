@@ -155,6 +155,11 @@ class LobeTable {
     return {cosine, albedo, 1.0f - angle};
   }
 
+  std::span<const float> numbers() const {
+    static_assert(sizeof(Row) == 67 * sizeof(float));
+    return {&rows_[0].albedo, rows_.size() * 67};
+  }
+
  private:
   static constexpr int kAlphas = 56, kCosines = 64;
   static constexpr float kFirstRoot = 0.1f;  ///< kMinAlpha^(1/4)
@@ -283,6 +288,10 @@ ZonalBrdf zonal_brdf(const Bsdf& b, const BsdfContext& view, int bands) {
   }
   z.specular = mean_fresnel(b, o, found);
   return z;
+}
+
+std::span<const float> zonal_lobe_table(bool ggx) {
+  return (ggx ? LobeTable::ggx() : LobeTable::blinn_phong()).numbers();
 }
 
 }  // namespace zonal

@@ -18,6 +18,7 @@
 /// does. docs/materials.md has its error.
 
 #include <array>
+#include <span>
 #include <string>
 
 #include "materials/bsdf.h"
@@ -47,5 +48,10 @@ inline bool has_zonal_lobe(const Bsdf& bsdf) {
 /// is no symmetric lobe, or w_out is below the horizon, everything is 0. The first call makes a table (0.1
 /// s).
 ZonalBrdf zonal_brdf(const Bsdf& bsdf, const BsdfContext& view, int bands);
+
+/// The table behind it, of GGX or of Blinn-Phong, for a copy elsewhere (a GPU): [56 widths][64 cosines][67],
+/// the last being what the lobe reflects, 1 - the cosine at which to take Fresnel, the fourth root of the
+/// axis' cosine, and F_l times that cosine.
+std::span<const float> zonal_lobe_table(bool ggx);
 
 }  // namespace zonal

@@ -320,6 +320,18 @@ void HvlIntegrator::with_emission(int first, F&& f) const {
     by_sh(std::integral_constant<int, 0>{}, std::false_type{});
 }
 
+HvlIntegrator::ShEmission HvlIntegrator::sh_emission(int j) const {
+  const Emitter& e = emitters_[j];
+  ShEmission result{e.x, e.y, e.z, std::vector<vec3>(size_t(emission_bands_) * (emission_bands_ + 1) / 2)};
+  hvl::for_each_even_coefficient(emission_bands_, emission_mirrored_, [&](int place, int l, int m, int) {
+    // The lanes' own factors come off again.
+    const float scale = 0.5f / hvl::Bands::table().norm(l, std::abs(m));
+    const float* c = e.coefficients + 3 * place;
+    result.coefficients[size_t(l) * (l + 1) / 2 + (m + l) / 2] = scale * vec3(c[0], c[1], c[2]);
+  });
+  return result;
+}
+
 vec3 HvlIntegrator::emission(int j, vec3 w) const {
   vec3 result;
   with_emission(j, [&](const auto& emit) {

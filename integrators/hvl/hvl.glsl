@@ -34,8 +34,8 @@ KERNEL float hvl_edge(ZonalCap cap, float soft) {
 }
 
 // (HVL-5) The receiver's F' over the cap in the direction `w` of its view frame, steradians times 1/sr. 0 where the cap lies
-// below the horizon, whatever rings there.
-KERNEL vec3 hvl_product(int bands, HvlColors f, ZonalCap cap, vec3 w, float soft) {
+// below the horizon, whatever rings there. `mirrored`: f has no coefficient with m < 0, so that half the work does.
+KERNEL vec3 hvl_any_product(int bands, bool mirrored, HvlColors f, ZonalCap cap, vec3 w, float soft) {
   ShCoefficients Y;
   sh_evaluate(bands, w, Y);
   float keep = hvl_edge(cap, soft);
@@ -50,10 +50,16 @@ KERNEL vec3 hvl_product(int bands, HvlColors f, ZonalCap cap, vec3 w, float soft
       weight *= ratio;
     }
     vec3 value = vec3(0.0f);
-    for (int m = -l; m <= l; ++m) value += f.c[l * (l + 1) + m] * Y.c[l * (l + 1) + m];
+    for (int m = mirrored ? 0 : -l; m <= l; ++m) value += f.c[l * (l + 1) + m] * Y.c[l * (l + 1) + m];
     sum += value * (band.gain * weight);
   }
   return w.z > -sqrt(cap.sine2) ? sum : vec3(0.0f);
+}
+KERNEL vec3 hvl_product(int bands, HvlColors f, ZonalCap cap, vec3 w, float soft) {
+  return hvl_any_product(bands, false, f, cap, w, soft);
+}
+KERNEL vec3 hvl_mirrored_product(int bands, HvlColors f, ZonalCap cap, vec3 w, float soft) {
+  return hvl_any_product(bands, true, f, cap, w, soft);
 }
 
 // (HVL-6), (HVL-7) The same for a diffuse part and a zonal lobe: `up` the cosine at the point, `turn` that between light and

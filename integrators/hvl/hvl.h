@@ -45,6 +45,20 @@ class HvlIntegrator : public ManyLights {
   /// What light `j` reflects of a unit flux towards w (unit, world), 1/sr: (HVL-2), or the BRDF.
   vec3 emission(int j, vec3 w) const;
 
+  // What a GPU twin takes over.
+  const HvlParams& params() const { return params_; }
+  const ShMaterials& materials() const { return materials_; }
+  /// Weights of `count` bands.
+  void window(int count, float* weights) const;
+  int emission_bands() const { return emission_bands_; }
+  /// (HVL-2) of light `j`, emission sh: its view frame (world) and, band by band, the scaled coefficients of
+  /// even l + m, m rising; hvl_emission takes them with a scale of 1.
+  struct ShEmission {
+    vec3 x, y, z;
+    std::vector<vec3> coefficients;
+  };
+  ShEmission sh_emission(int j) const;
+
  protected:
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;
   std::unique_ptr<TileState> prepare_tile(const TilePoints&) const override;
@@ -65,8 +79,6 @@ class HvlIntegrator : public ManyLights {
   void with_emission(int first, F&& f) const;
   void receive_sh(const TilePoints&, hvl::Receivers&) const;
   void receive_zonal(const TilePoints&, hvl::Receivers&) const;
-  /// Weights of `count` bands.
-  void window(int count, float* weights) const;
 
   HvlParams params_;
   std::string where_;

@@ -29,6 +29,7 @@ struct VplParams : ManyLightsParams {
 class VplIntegrator : public ManyLights {
  public:
   explicit VplIntegrator(const VplParams& params) : ManyLights(params), params_(params) {}
+  const VplParams& params() const { return params_; }
 
  protected:
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;

@@ -64,8 +64,8 @@ void add_lobe(const TilePoints& p, const VsglReceivers& r, VsglReceivers::Run ru
     float diffuse = second ? sg_cosine_2024(local.z, K) : sg_cosine_2015(local.z, K);
     float red = 0, green = 0, blue = 0;
     if constexpr (specular) {
-      const float s = 1.0f - vsgl_base_cosine(local.z, K), s2 = s * s;
-      diffuse *= max(r.base[k] + r.square[k] * s2 + r.fifth[k] * (s2 * s2 * s), 0.0f);  // (VSGL-19)
+      diffuse *=
+          vsgl_coat_at(vec3(r.base[k], r.square[k], r.fifth[k]), vsgl_base_cosine(local.z, K));  // (VSGL-19)
 
       // (VSGL-17) Fresnel's factor at the half vector of camera and peak stands for that of the whole lobe.
       const vec3 v(p.ox[k], p.oy[k], p.oz[k]);
@@ -114,6 +114,10 @@ uint64_t in_front(const TilePoints& p, vec3 target) {
 
 }  // namespace
 
+float VsglIntegrator::least_share() const {
+  return params_.generation == VsglGeneration::y2024 ? kLeastShare2024 : kLeastShare2015;
+}
+
 VsglIntegrator::VsglIntegrator(const VsglParams& params) : ManyLights(params), params_(params) {
   if (params.distribution == ManyLightsParams::Distribution::paths)
     throw SceneError(
@@ -146,7 +150,7 @@ std::unique_ptr<TileState> VsglIntegrator::prepare_tile(const TilePoints& points
 void VsglIntegrator::gather(const TilePoints& points, int first, int count, Contributions& out) const {
   const auto& receivers = static_cast<const VsglReceivers&>(*points.state);
   const bool second = params_.generation == VsglGeneration::y2024;
-  const Options options{second, second ? kLeastShare2024 : kLeastShare2015, least_variance_};
+  const Options options{second, least_share(), least_variance_};
   out.order = Contributions::Order::by_light;
   for (int j = 0; j < count; ++j) {
     float* r = &out.r[out.at(j, 0)];

@@ -255,4 +255,19 @@ KERNEL float vsgl_base_cosine(float cosine, float K) {
   return clamp((K * cosine + 2.0f) / sqrt(max(length2, 1e-12f)), 0.0f, 1.0f);
 }
 
+// (VSGL-19) What a coat leaves of light that comes in at the cosine c: x + y s^2 + z s^5, s = 1 - c, through the shares at the
+// cosines 1, 0.4 and 0.1.
+KERNEL vec3 vsgl_coat(float at_normal, float at_middle, float at_low) {
+  // s = 0.6 and 0.9: the powers' determinant.
+  float inverse = 1.0f / (0.36f * 0.59049f - 0.07776f * 0.81f);
+  float middle = at_middle - at_normal;
+  float low = at_low - at_normal;
+  return vec3(at_normal, (middle * 0.59049f - low * 0.07776f) * inverse, (low * 0.36f - middle * 0.81f) * inverse);
+}
+KERNEL float vsgl_coat_at(vec3 coat, float cosine) {
+  float s = 1.0f - cosine;
+  float s2 = s * s;
+  return max(coat.x + coat.y * s2 + coat.z * (s2 * s2 * s), 0.0f);
+}
+
 #endif

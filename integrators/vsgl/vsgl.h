@@ -27,6 +27,10 @@ class VsglIntegrator : public ManyLights {
 
   /// Of the current pass, one a light of light_set().
   const std::vector<VsglBlock>& blocks() const { return blocks_; }
+  const VsglParams& params() const { return params_; }
+  /// Bounds from below of vsgl_radiance: variance over squared distance, and variance (m^2).
+  float least_share() const;
+  float least_variance() const { return least_variance_; }
 
  protected:
   void adjust(VirtualLightOptions& options) const override { options.keep_texels = true; }

@@ -5,22 +5,15 @@ namespace zonal {
 #include "integrators/vsgl/vsgl.glsl"
 
 VsglCoat fit_coat(const Bsdf& b, const BsdfContext& view) {
-  VsglCoat coat;
-  if (b.kind != BsdfKind::coated && b.kind != BsdfKind::metallic_roughness) return coat;
+  if (b.kind != BsdfKind::coated && b.kind != BsdfKind::metallic_roughness) return {};
   if (is_black(b.diffuse) || !(view.normalization > 0)) return {0, 0, 0};
   // Through the table's values at three cosines. Where the coat is anisotropic, half way between its axes.
-  const auto loss = [&](float c) {
+  const auto share = [&](float c) {
     const float side = std::sqrt(0.5f * (1.0f - c * c));
     return kPi * view.normalization * (1.0f - view.coat.at(vec3(side, side, c)));
   };
-  coat.base = loss(1.0f);
-  const float middle = loss(0.4f) - coat.base, low = loss(0.1f) - coat.base;
-  // s = 0.6 and 0.9: the powers' determinant.
-  constexpr float a2 = 0.36f, a5 = 0.07776f, b2 = 0.81f, b5 = 0.59049f;
-  constexpr float inverse = 1.0f / (a2 * b5 - a5 * b2);
-  coat.square = (middle * b5 - low * a5) * inverse;
-  coat.fifth = (low * a2 - middle * b2) * inverse;
-  return coat;
+  const vec3 coat = vsgl_coat(share(1.0f), share(0.4f), share(0.1f));
+  return {coat.x, coat.y, coat.z};
 }
 
 namespace {

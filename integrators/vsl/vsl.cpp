@@ -2,6 +2,7 @@
 
 #include "core/glsl.h"
 #include "core/sampling.h"
+#include "materials/microfacet.h"
 
 namespace zonal {
 #include "integrators/vsl/vsl.glsl"
@@ -128,12 +129,14 @@ inline void aim(const TilePoints& points, const Sphere& light, int k, vec3 w, fl
   const vec3 from = frozen ? center : w;
   const float emitter = -dot(light.normal, from);
   const float both = max(receiver, 0.0f) * max(emitter, 0.0f);
-  out.cosines[k] = side > 0.0f ? both * lit : 0.0f;
+  // A light reflects nothing below its shading horizon, which Lambert's constant value does not say.
+  const float above = -dot(from, light.frame.z);
+  out.cosines[k] = side > 0.0f && above > kMinCosine ? both * lit : 0.0f;
   out.x[k] = w.x * points.tx[k] + w.y * points.ty[k] + w.z * points.tz[k];
   out.y[k] = w.x * points.bx[k] + w.y * points.by[k] + w.z * points.bz[k];
   out.z[k] = receiver;
   out.ex[k] = -dot(from, light.frame.x), out.ey[k] = -dot(from, light.frame.y);
-  out.ez[k] = -dot(from, light.frame.z);
+  out.ez[k] = above;
 }
 
 /// A direction of point k's cone. (VSL-3)
@@ -201,6 +204,12 @@ VslIntegrator::VslIntegrator(const VslParams& params) : ManyLights(params), para
     lattice_c_.push_back(static_cast<float>(std::cos(angle)));
     lattice_s_.push_back(static_cast<float>(std::sin(angle)));
   }
+}
+
+std::vector<vec3> VslIntegrator::lattice() const {
+  std::vector<vec3> points;
+  for (size_t i = 0; i < lattice_u_.size(); ++i) points.emplace_back(lattice_u_[i], lattice_c_[i], lattice_s_[i]);
+  return points;
 }
 
 int VslIntegrator::cone_samples() const {

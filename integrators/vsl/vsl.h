@@ -31,6 +31,9 @@ struct VslParams : ManyLightsParams {
 class VslIntegrator : public ManyLights {
  public:
   explicit VslIntegrator(const VslParams& params);
+  const VslParams& params() const { return params_; }
+  /// Of the cone's directions: u, and the cosine and sine of the turn (lattice_u_ and so on).
+  std::vector<vec3> lattice() const;
 
  protected:
   void prepare(const Pass&, const VirtualLightSet&, LightArrays&, const Stop&, PassStats&) override;

@@ -16,6 +16,7 @@
 #include "gl/program.h"
 #include "materials/sh_projector.h"
 #include "tests/gl/support.h"
+#include "tests/paths.h"
 
 namespace zonal {
 namespace kernel_cases {
@@ -83,6 +84,8 @@ const KernelCase kCases[] = {ROW(1, vpl_inverse_square, 1),
                              ROW(3, hvl_emission, 3),
                              ROW(3, hvl_edge, 1),
                              ROW(3, hvl_product, 3),
+                             ROW(3, hvl_any_product, 3),
+                             ROW(3, hvl_mirrored_product, 3),
                              ROW(3, hvl_zonal_product, 3),
                              ROW(4, sg_erfcx, 1),
                              ROW(4, sg_erfc, 1),
@@ -111,6 +114,10 @@ const KernelCase kCases[] = {ROW(1, vpl_inverse_square, 1),
                              ROW(5, vsgl_specular_2024, 4),
                              ROW(5, vsgl_half_cosine, 1),
                              ROW(5, vsgl_base_cosine, 1),
+                             ROW(5, vsgl_coat, 3),
+                             ROW(5, vsgl_coat_at, 1),
+                             ROW(6, sh_layer_weights, 9),
+                             ROW(6, sh_layer_place, 1),
                              ROW(6, shmat_open, 5),
                              ROW(6, shmat_index, 1),
                              ROW(6, shmat_row, 2),
@@ -220,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(all, KernelsOnBothSides, testing::ValuesIn(kCases),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Kernels, none_is_without_a_case) {
-  const std::filesystem::path root = ZONAL_SOURCE_DIR;
+  const std::filesystem::path root = test::source_dir();
   const std::string shader = test::shader_text().read("tests/gl/kernel_cases.glsl");
   const std::regex declared("KERNEL +[A-Za-z0-9_]+ +([a-z0-9_]+)\\(");
   int functions = 0;

@@ -1,6 +1,7 @@
 #include "tests/gl/support.h"
 
 #include "core/error.h"
+#include "tests/paths.h"
 
 namespace zonal::test {
 namespace {
@@ -30,7 +31,7 @@ const std::string& no_gl_reason() {
   return shared().reason;
 }
 const gl::ShaderText& shader_text() {
-  static const gl::ShaderText text(ZONAL_SOURCE_DIR);
+  static const gl::ShaderText text(test::source_dir());
   return text;
 }
 

@@ -1,0 +1,133 @@
+// Frame times of the GPU side at the settings the thesis quotes (Mézières 2022, tables 5.1 to 5.3 on an RTX
+// 2080), beside the CPU twin's time for the same picture.
+//
+//     gl_frame_times [SCENE.json] [--frames N] [--scale S] [--cpu]
+//
+// Prints a table: the median and the largest of N finished frames (default 30), without upload and reading
+// back. --scale divides both sides of the picture, for software renderers; --cpu also times the CPU twin
+// once.
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/scene_loader.h"
+#include "gl/render.h"
+#include "gl/timer.h"
+#include "gl/twin.h"
+#include "integrators/table.h"
+
+namespace zonal {
+namespace {
+
+struct Configuration {
+  const char* label;
+  const char* method;
+  const char* settings;
+  int width, height;
+  double thesis_ms, bar_ms;
+};
+const Configuration kConfigurations[] = {
+    {"vpl, 400 lights", "vpl", R"({"lights": 400})", 1280, 1024, 13, 4},
+    {"hvl, 400 lights, 5 bands", "hvl", R"({"lights": 400, "bands": 5, "emission_bands": 3})", 1280, 1024, 61,
+     8},
+    {"hvl, 1500 lights, 9 bands", "hvl", R"({"lights": 1500, "bands": 9, "emission_bands": 3})", 1280, 1024,
+     500, 60},
+    {"hvl zonal, 400 lights, 10 bands", "hvl",
+     R"({"lights": 400, "bands": 10, "product": "zonal", "emission": "brdf"})", 1600, 900, 32, 6},
+    {"vsgl, 400 lights", "vsgl", R"({"lights": 400, "block_texels": 3})", 1280, 1024, 0, 0},
+    {"vsl, 400 lights, 4 samples", "vsl", R"({"lights": 400, "samples": 4})", 1280, 1024, 0, 0},
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+void measure(const gl::Context& context, const Scene& scene, const Configuration& c, int frames, int scale,
+             bool cpu) {
+  nlohmann::json settings = nlohmann::json::parse(c.settings);
+  settings["occlusion"] = "none", settings["direct"] = "none";
+  const auto integrator = find_integrator(c.method, "gl_frame_times").make(settings, c.label, nullptr);
+  Camera camera = scene.camera();
+  camera.width = c.width / scale, camera.height = c.height / scale;
+  const gl::ShaderText text;
+  const auto twin = gl::make_twin(c.method, text, *integrator, scene);
+  PassStats stats;
+  integrator->load(scene, {}, stats);
+  const Pass pass{.scene = scene, .camera = camera, .seed = 1};
+  integrator->begin_pass(pass, {}, stats);
+  gl::SceneBuffers buffers(scene);
+  gl::GBuffer points(text, camera.width, camera.height);
+  const gl::Texture2D sum(GL_RGBA32F, camera.width, camera.height);
+  twin->begin_pass(pass, buffers);
+  gl::Timer timer(context);
+  std::vector<double> points_ms, gather_ms, frame_ms;
+  const float zero[4] = {0, 0, 0, 0};
+  for (int frame = -2; frame < frames; ++frame) {  // the first two warm up
+    glClearTexImage(sum.id(), 0, GL_RGBA, GL_FLOAT, zero);
+    timer.begin();
+    points.draw(buffers, camera, vec2(0.5f), scene.bounds().radius);
+    const double first = 1e3 * timer.end();
+    timer.begin();
+    twin->gather(points, sum);
+    const double second = 1e3 * timer.end();
+    if (frame < 0) continue;
+    points_ms.push_back(first), gather_ms.push_back(second), frame_ms.push_back(first + second);
+  }
+  context.check(c.label);
+  fmt::print("{:<32} {:>5}x{:<5} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>8} {:>6}", c.label, camera.width,
+             camera.height, median(points_ms), median(gather_ms), median(frame_ms),
+             *std::max_element(frame_ms.begin(), frame_ms.end()),
+             c.thesis_ms > 0 ? fmt::format("{:.0f}", c.thesis_ms) : "-",
+             c.bar_ms > 0 ? fmt::format("{:.0f}", c.bar_ms) : "-");
+  if (cpu) {
+    Film film(camera.width, camera.height);
+    const RenderReport report = render(scene, *integrator, film, {.passes = 1}, {.seed = 1});
+    fmt::print(" {:>9.1f} {:>6.2f}", 1e3 * report.radiance_seconds,
+               median(frame_ms) / (1e3 * report.radiance_seconds));
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+int run(int argc, char** argv) {
+  std::string scene_file = "scenes/cornell/cornell.json", only;
+  int frames = 30, scale = 1;
+  bool cpu = false;
+  for (int i = 1; i < argc; ++i) {
+    const auto number = [&] { return i + 1 < argc ? std::max(1, std::atoi(argv[++i])) : 1; };
+    if (!std::strcmp(argv[i], "--frames"))
+      frames = number();
+    else if (!std::strcmp(argv[i], "--scale"))
+      scale = number();
+    else if (!std::strcmp(argv[i], "--cpu"))
+      cpu = true;
+    else
+      scene_file = argv[i];
+  }
+  const auto context = gl::Context::headless();
+  const Scene scene = load_scene(scene_file);
+  fmt::print("{} ({}), {}; {} frames\n", context->info().renderer, context->info().platform, scene.name(),
+             frames);
+  fmt::print("{:<32} {:<11} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6}{}\n", "milliseconds", "", "points", "gather",
+             "frame", "largest", "thesis", "bar", cpu ? "       cpu  ratio" : "");
+  for (const Configuration& c : kConfigurations) measure(*context, scene, c, frames, scale, cpu);
+  return 0;
+}
+
+}  // namespace
+}  // namespace zonal
+
+int main(int argc, char** argv) {
+  try {
+    return zonal::run(argc, argv);
+  } catch (const zonal::SceneError& error) {
+    fmt::print(stderr, "gl_frame_times: {}\n", error.what());
+    return 2;
+  }
+}
