@@ -58,6 +58,7 @@ void refuse_unsupported(const std::string& method, const ManyLights& cpu, const 
   if (shared.occlusion != Occlusion::none)
     refuse(method, "occlusion", kOcclusions[static_cast<int>(shared.occlusion)], "\"none\"");
   if (shared.skip > 0) refuse(method, "skip", fmt::format("{}", shared.skip), "0");
+  if (shared.split > 0) refuse(method, "split", fmt::format("{}", shared.split), "0");
   for (const auto& material : scene.materials())
     if (!measured && std::string(material->type()) == "measured")
       throw SceneError(fmt::format(
