@@ -183,6 +183,20 @@ TEST(SweepFile, every_mistake_is_one_line_with_its_place_and_the_nearest_name) {
   }
 }
 
+TEST(SweepFile, the_published_sweeps_can_be_read) {
+  int read = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(test::source_dir() + "/scenes/sweeps")) {
+    const std::string file = entry.path().string(),
+                      text = entry.path().extension() == ".json" ? text_of(file) : "";
+    if (text.empty() || entry.path().filename() == "sweep.schema.json") continue;
+    if (text.find("${ZONAL_DATA}") != std::string::npos && !std::getenv("ZONAL_DATA")) continue;
+    EXPECT_GT(read_sweep(file).cells.size(), 0u) << file;
+    ++read;
+  }
+  EXPECT_GE(read, 2);
+}
+
 TEST(SweepFile, a_key_changes_with_everything_that_determines_the_pixels) {
   const Folder folder;
   const SweepPlan plan = read_sweep(folder.write("s.json", small_sweep().dump()));
