@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_reference(app, &exit_code);
   add_sweep(app, &exit_code);
   add_verify(app, &exit_code);
+  add_view(app, &exit_code);
 
   try {
     app.parse(argc, argv);
