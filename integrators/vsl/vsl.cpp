@@ -160,7 +160,7 @@ void add_cosines(const TilePoints& points, Run run, const Sphere& light, const C
     const float receiver = w.x * points.nx[k] + w.y * points.ny[k] + w.z * points.nz[k];
     const float side = w.x * points.gx[k] + w.y * points.gy[k] + w.z * points.gz[k];
     const float both = max(receiver, 0.0f) * max(-dot(light.normal, from), 0.0f);
-    sum[k] += side > 0.0f ? both : 0.0f;
+    sum[k] += side > 0.0f && -dot(from, light.frame.z) > kMinCosine ? both : 0.0f;
   }
 }
 
