@@ -140,7 +140,9 @@ std::string table_markdown(const json& results) {
       "differ by; bias: "
       "what their mean is off by (both linear RMS).\n";
   for (const json& metric : results["metrics"])
-    text += fmt::format("{}: {}\n", metric["name"].get<std::string>(), metric["formula"].get<std::string>());
+    if (metric["named"].get<bool>())
+      text +=
+          fmt::format("{}: {}\n", metric["name"].get<std::string>(), metric["formula"].get<std::string>());
   return text;
 }
 
