@@ -35,13 +35,17 @@ Image with_emission(const Scene& scene, const std::string& bands) {
   return film.radiance();
 }
 
-// F' of Lambert's law holds 99.2 % in three bands, F 94.9 % in four: automatic is three, not six.
-TEST(HvlEmission, a_matt_surface_takes_the_three_bands_of_its_reflected_light) {
+// What a matt surface sends out is summed in closed form: its number of bands changes rounding alone, where
+// three and six bands of the hemisphere's step would differ by percents.
+TEST(HvlEmission, a_matt_surface_does_not_depend_on_bands) {
   const Scene scene = lit_floor(R"("type": "lambert", "albedo": [0.8, 0.5, 0.3])");
-  const Image automatic = with_emission(scene, "\"auto\"");
-  EXPECT_GT(max_component(automatic.rgb(4, 4)), 0);
+  const Image automatic = with_emission(scene, "\"auto\""), six = with_emission(scene, "6");
+  const float peak = max_component(automatic.rgb(4, 4));
+  EXPECT_GT(peak, 0);
   EXPECT_EQ(automatic.pixels, with_emission(scene, "3").pixels);
-  EXPECT_NE(automatic.pixels, with_emission(scene, "6").pixels);
+  // 40 lights, each a few operations of 6e-8: 1e-5 leaves room.
+  for (size_t i = 0; i < six.pixels.size(); ++i)
+    EXPECT_NEAR(automatic.pixels[i], six.pixels[i], 1e-5f * peak);
 }
 
 // F of the papers and felts spikes in the last degrees and would take 64 bands; F' needs three up to 60
