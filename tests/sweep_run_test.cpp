@@ -24,8 +24,9 @@ json results_of(const std::string& out) {
 
 /// The error columns: every score of every cell and of its curve.
 json errors(const std::string& out) {
+  const json results = results_of(out);
   json all = json::array();
-  for (const json& cell : results_of(out)["cells"]) {
+  for (const json& cell : results["cells"]) {
     json curve = json::array();
     for (const json& point : cell.value("curve", json::array()))
       curve.push_back({point["passes"], point["scores"]});
@@ -223,7 +224,8 @@ TEST(Sweep, a_full_disk_ends_it_in_one_line_with_nothing_finished_lost) {
   EXPECT_NE(result.last_line.find("no room is left"), std::string::npos) << result.last_line;
   EXPECT_NE(result.last_line.find("the same command goes on"), std::string::npos) << result.last_line;
   ASSERT_EQ(sweep(file, out), 0);
-  for (const json& cell : results_of(out)["cells"]) EXPECT_EQ(cell["status"], "done") << cell["reason"];
+  const json results = results_of(out);
+  for (const json& cell : results["cells"]) EXPECT_EQ(cell["status"], "done") << cell["reason"];
   for (const auto& entry : fs::recursive_directory_iterator(out))
     EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
