@@ -76,6 +76,10 @@ BoundingSphere Scene::bounds() const {
 const std::vector<std::string>& Scene::notes() const {
   return impl_->notes;
 }
+std::span<const Shape> Scene::shapes() const {
+  return impl_->shapes;
+}
+
 size_t Scene::triangle_count() const {
   return impl_->triangle_count;
 }

@@ -8,6 +8,7 @@
 /// World: right-handed, y up, metres.
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,8 @@ struct SceneParts {
   std::vector<std::string> notes;  ///< one line each: what the loader dropped or guessed
 };
 
+struct Shape;  // core/scene_impl.h
+
 class Scene {
  public:
   /// Builds the acceleration structure. Zero-area triangles are dropped and counted in `notes()`; indices out of range
@@ -98,6 +101,8 @@ class Scene {
   BoundingSphere bounds() const;  ///< of all surfaces; radius 1 around the camera when there are none
   const std::vector<std::string>& notes() const;
   size_t triangle_count() const;
+  /// The shapes as they were laid out for tracing: what a copy for another machine (a GPU) is made from.
+  std::span<const Shape> shapes() const;
 
   /// Nearest hit in (t_min, t_max). Cut-away (masked) surfaces are passed through.
   Hit intersect(vec3 origin, vec3 direction, float t_min = 0, float t_max = kInfinity) const;

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/scene_shapes.h"
+#include "core/scene_impl.h"
 #include "gl/units.h"
 
 namespace zonal::gl {
@@ -51,7 +51,7 @@ void emissions(const Scene& scene, uint32_t light, vec3* front, vec3* back) {
 }  // namespace
 
 void SceneBuffers::add_geometry(const Scene& scene, Staging& s) {
-  for (const Shape& shape : shapes_of(scene)) {
+  for (const Shape& shape : scene.shapes()) {
     const auto first_vertex = static_cast<uint32_t>(s.vertices.size() / 2);
     for (uint32_t i = 0; i < shape.vertex_count; ++i) {
       const Vertex& v = shape.vertices[i];

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/metrics.h"
-#include "core/scene_shapes.h"
+#include "core/scene_impl.h"
 #include "gl/direct.h"
 #include "gl/gbuffer.h"
 #include "gl/render.h"
@@ -46,7 +46,7 @@ Agreement agreement(const Scene& scene, const std::vector<gl::GBuffer::Pixel>& p
     for (int x = 0; x < kWidth; ++x) {
       const Hit hit = scene.intersect(camera.position, camera.direction(vec2(x + 0.5f, y + 0.5f)));
       const auto& p = pixels[size_t(y) * kWidth + x];
-      const bool same = p.shape == hit.shape && (!hit.found() || shapes_of(scene)[hit.shape].radius > 0 ||
+      const bool same = p.shape == hit.shape && (!hit.found() || scene.shapes()[hit.shape].radius > 0 ||
                                                  p.primitive == hit.primitive);
       result.same.push_back(same);
       count += same;
