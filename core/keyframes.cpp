@@ -67,7 +67,7 @@ void camera_keys(Fields& fields, Tracks& tracks, int frame) {
 }
 
 void light_keys(Fields& fields, Tracks& tracks, int frame) {
-  read_points(fields, tracks, frame, {"position", "direction", "look_at", "center", "corner"});
+  read_points(fields, tracks, frame, {"position", "direction", "look_at", "center", "normal", "corner"});
   read_colors(fields, tracks, frame, {"intensity", "power", "radiance", "irradiance", "scale"});
   read_scalars(fields, tracks, frame, {"inner", "outer", "rotation"}, kPlace);
   read_scalars(fields, tracks, frame, {"radius"}, kLength);
@@ -132,7 +132,10 @@ void merge(json& target, const json& values, const std::string& where) {
       {"environment", {"radiance", "scale", "rotation"}},
       {"sphere", {"center", "radius", "radiance", "power"}},
       {"quad", {"corner", "radiance", "power"}},
-      {"triangle", {"radiance", "power"}}};
+      {"triangle", {"radiance", "power"}},
+      {"disk", {"center", "normal", "radius", "radiance", "power"}},
+      {"polygon", {"radiance", "power"}},
+      {"textured", {"corner", "scale"}}};
   const json type = target.contains("type") ? target["type"] : json();
   const auto kind = type.is_string() ? moving.find(type.get<std::string>()) : moving.end();
   for (const auto& [key, value] : values.items()) {

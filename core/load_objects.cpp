@@ -103,13 +103,21 @@ void read_mesh(Loading& loading, Fields& fields, Common common) {
 
 }  // namespace
 
-MeshData read_triangle(Fields& fields) {
-  const json& value = fields.require("vertices", "three points [[x, y, z], ...]");
+std::vector<vec3> read_points(Fields& fields, size_t fewest, size_t most) {
+  const std::string expected = fewest == most ? "three points" : fmt::format("{} to {} points", fewest, most);
+  const json& value = fields.require("vertices", expected + " [[x, y, z], ...]");
   const std::string where = fields.at("vertices");
-  const auto points = read_array(value, where, "three points");
-  if (points.size() != 3) fields.fail("vertices", "found " + describe(value) + ", expected three points");
-  std::array<vec3, 3> p;
-  for (size_t i = 0; i < 3; ++i) p[i] = read_vector(points[i], where_of(where, i), kPlace);
+  const auto points = read_array(value, where, expected);
+  if (points.size() < fewest || points.size() > most)
+    fields.fail("vertices", "found " + describe(value) + ", expected " + expected);
+  std::vector<vec3> result;
+  for (size_t i = 0; i < points.size(); ++i)
+    result.push_back(read_vector(points[i], where_of(where, i), kPlace));
+  return result;
+}
+
+MeshData read_triangle(Fields& fields) {
+  const std::vector<vec3> p = read_points(fields, 3, 3);
   return triangle_mesh(p[0], p[1], p[2]);
 }
 

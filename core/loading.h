@@ -140,8 +140,20 @@ Camera read_camera(const Loading& loading, const nlohmann::json& value, const st
 MeshData read_triangle(Fields& fields);
 /// "corner" and the two "edges" that leave it.
 MeshData read_quad(Fields& fields);
+/// "vertices": so many points, counter-clockwise seen from the front.
+std::vector<vec3> read_points(Fields& fields, size_t fewest, size_t most);
+/// Which of two keys is there: exactly one must be. True: the first.
+bool first_of(Fields& fields, const char* first, const char* second);
 /// Exactly one of "radiance" and "power", and "two_sided".
 Emission read_emission(Fields& fields);
+/// A picture file as radiance: decoded where it is not linear, times `scale`.
+struct RadiancePicture {
+  int width, height;
+  std::vector<vec3> texels;  ///< W m^-2 sr^-1, row-major from the top
+};
+RadiancePicture read_radiance(Loading& loading, const std::string& text, const std::string& where, vec3 scale);
+/// A light of a kind that has a surface, with its shape.
+void read_area_light(Loading& loading, Fields& fields, const std::string& kind, const std::string& name);
 /// Adds the shape and, when it glows, its light. A mesh shape's light covers its triangles.
 void add_shape(Loading& loading, ShapeData shape, const std::optional<Emission>& emission);
 

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/scene_impl.h"
 #include "gl/units.h"
+#include "lights/shaped_lights.h"
 
 namespace zonal::gl {
 
@@ -46,6 +47,9 @@ void emissions(const Scene& scene, uint32_t light, vec3* front, vec3* back) {
   hit.normal = vec3(0, 0, 1);
   *front = scene.lights()[light]->radiance(hit, vec3(0, 0, 1));
   *back = scene.lights()[light]->radiance(hit, vec3(0, 0, -1));
+  // The shaders know one radiance a side: a picture is shown as its mean.
+  if (const auto* picture = dynamic_cast<const TexturedLight*>(scene.lights()[light].get()))
+    *front = picture->mean(), *back = picture->two_sided ? *front : vec3(0);
 }
 
 }  // namespace

@@ -106,6 +106,9 @@ const std::vector<LightKind>& light_kinds() {
       {"sphere", "a glowing ball"},
       {"quad", "a glowing parallelogram"},
       {"triangle", "a glowing triangle"},
+      {"disk", "a glowing disk"},
+      {"polygon", "a glowing flat polygon"},
+      {"textured", "a glowing parallelogram with a picture on it"},
       {"mesh", "a glowing object: any object with \"emission\""},
       {"environment", "light from everywhere: a constant or a latitude-longitude picture"},
   };

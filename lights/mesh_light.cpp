@@ -1,7 +1,6 @@
 #include <utility>
 
-#include "core/sampling.h"
-#include "core/scene.h"
+#include "lights/area_sampling.h"
 #include "lights/light.h"
 
 namespace zonal {
@@ -26,16 +25,6 @@ struct MeshLight::Impl {
     *face = &faces[index];
     *position = (*face)->a + (*face)->ab * b.x + (*face)->ac * b.y;
     return true;
-  }
-
-  /// The density per solid angle at distance sqrt(distance2) along w_in; 0 where the surface is edge-on or
-  /// dark.
-  float solid_angle_density(float density, vec3 normal, vec3 w_in, float distance2) const {
-    const float facing = -glm::dot(normal, w_in);
-    const float cosine = two_sided ? std::abs(facing) : facing;
-    if (!(cosine > 0)) return 0;
-    const float pdf = density * distance2 / cosine;
-    return std::isfinite(pdf) ? pdf : 0.0f;
   }
 };
 
@@ -84,7 +73,7 @@ LightSample MeshLight::sample(vec3 x, vec2 u) const {
   if (!(distance2 > 0)) return s;
   const float distance = std::sqrt(distance2);
   const vec3 w_in = to_light / distance;
-  const float pdf = impl_->solid_angle_density(face->density, face->normal, w_in, distance2);
+  const float pdf = solid_angle_density(face->density, face->normal, w_in, distance2, impl_->two_sided);
   if (!(pdf > 0)) return s;
   s.w_in = w_in;
   s.distance = distance;
@@ -104,7 +93,8 @@ float MeshLight::pdf(vec3 x, const LightHit& hit) const {
   const vec3 to_light = hit.position - x;
   const float distance2 = glm::dot(to_light, to_light);
   if (!(distance2 > 0)) return 0;
-  return impl_->solid_angle_density(density, hit.normal, to_light / std::sqrt(distance2), distance2);
+  return solid_angle_density(density, hit.normal, to_light / std::sqrt(distance2), distance2,
+                             impl_->two_sided);
 }
 
 EmissionSample MeshLight::sample_emission(vec2 u_position, vec2 u_direction) const {
@@ -113,14 +103,7 @@ EmissionSample MeshLight::sample_emission(vec2 u_position, vec2 u_direction) con
   if (!impl_->sample_point(u_position, &s.origin, &face)) return s;
   // Faces are drawn with p_i, not exactly area_i/area: the ratio corrects the last digits.
   s.power = power() / (face->density * impl_->area);
-  vec3 normal = face->normal;
-  if (impl_->two_sided) {
-    const bool back = u_direction.x >= 0.5f;
-    u_direction.x = 2.0f * u_direction.x - (back ? 1.0f : 0.0f);
-    if (back) normal = -normal;
-  }
-  s.direction = Frame(normal).to_world(cosine_hemisphere(u_direction));
-  s.origin = offset_origin(s.origin, normal, s.direction);
+  leave_surface(s.origin, face->normal, impl_->two_sided, u_direction, &s);
   return s;
 }
 

@@ -52,6 +52,8 @@ ShLights::ShLights(const std::vector<const Light*>& lights, const ShLightOptions
       spheres_.radius.push_back(sphere->radius);
     } else if (const auto* mesh = dynamic_cast<const TriangleLight*>(light)) {
       add_mesh(*mesh);
+    } else if (const auto* picture = dynamic_cast<const TexturedLight*>(light)) {
+      add_picture(*picture);
     } else if (const auto* point = dynamic_cast<const PointLight*>(light)) {
       points_.add(point->position, point->intensity);
     } else if (const auto* spot = dynamic_cast<const SpotLight*>(light)) {

@@ -7,10 +7,10 @@
 ///     float L[3 * 25];
 ///     lights.coefficients(5, x, L);            // L[c * sh::count(5) + l(l+1)+m], colour c, world frame
 ///
-/// Spheres are caps; triangles of quads, polygons and meshes are integrated exactly or stand for spheres;
-/// points and spots are Diracs; parallel light and the environment do not depend on the point and are
-/// projected once. Lights that shine on one side are black seen from the other; a sphere seen from inside is
-/// a hemisphere.
+/// Spheres are caps; triangles of quads, disks, polygons and meshes are integrated exactly or stand for
+/// spheres, and so do the cells of a quadtree that pictures are cut in (Sec. 3.4); points and spots are
+/// Diracs; parallel light and the environment do not depend on the point and are projected once. Lights that
+/// shine on one side are black seen from the other; a sphere seen from inside is a hemisphere.
 
 #include <memory>
 #include <string>
@@ -33,6 +33,9 @@ struct ShLightOptions {
   /// Spheres for triangles: a triangle is cut in two until its spheres are off by less than this share, seen
   /// from `split_distance` metres; 0: one sphere a triangle.
   float split_error = 0, split_distance = 1;
+  /// Pictures become cells of one radiance each, as few as keep the light that is moved below this share of
+  /// all of it; 0: one cell a texel.
+  float texture_error = 0.05f;
   /// Relative error allowed to an exact triangle by the bound of sh/triangle_batch.h: far ones are one
   /// direction, near ones take more.
   float tolerance = 1e-3f;
@@ -85,6 +88,8 @@ class ShLights {
   };
 
   void add_mesh(const TriangleLight&);
+  void add_picture(const TexturedLight&);
+  void add_flat(vec3 center, vec3 area, vec3 radiance, bool two_sided);
   void add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth);
   float split_error_of(const sh::TriangleSphere<float>&) const;
   void add_environment(const PictureLight&);

@@ -27,11 +27,26 @@ sh::TriangleMethod method_of(ShLightOptions::Polygons polygons) {
 }  // namespace
 
 void ShLights::add_mesh(const TriangleLight& light) {
+  const auto* disk = dynamic_cast<const DiskLight*>(&light);
+  if (disk && options_.polygons != ShLightOptions::Polygons::exact)
+    return add_flat(disk->center, disk->normal * (kPi * sqr(disk->radius)), light.emission, light.two_sided);
   for (const MeshLight::Triangle& t : light.triangles)
     if (options_.polygons == ShLightOptions::Polygons::exact)
       exact_.add(t.a, t.b, t.c, light.emission, light.two_sided);
     else
       add_triangle(t.a, t.b, t.c, light.emission, light.two_sided, 0);
+}
+
+/// One sphere for a flat shape with this middle and area vector, m^2: that of an equilateral triangle,
+/// whatever `split_error`.
+void ShLights::add_flat(vec3 center, vec3 area, vec3 radiance, bool two_sided) {
+  const float size = glm::length(area);
+  const Frame frame(area / size);
+  // A side of an equilateral triangle is 2 sqrt(area / sqrt(3)); its corners lie side / sqrt(3) from the
+  // middle.
+  const float reach = 2 * std::sqrt(size / std::sqrt(27.0f));
+  const vec3 up = frame.y * (reach * 0.5f), side = frame.x * (reach * std::sqrt(0.75f));
+  add_triangle(center - up - side, center - up + side, center + 2.0f * up, radiance, two_sided, kMostCuts);
 }
 
 void ShLights::add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth) {

@@ -7,6 +7,7 @@
 
 #include <utility>
 
+#include "core/sampling.h"
 #include "lights/light.h"
 
 namespace zonal {
@@ -21,6 +22,45 @@ struct TriangleLight : MeshLight {
         triangles(std::move(some)),
         emission(radiance),
         two_sided(both_sides) {}
+};
+
+/// A disk as the mesh of core/flat_shapes.h; methods that approximate take the circle.
+struct DiskLight : TriangleLight {
+  vec3 center, normal;  ///< unit, to the lit side
+  float radius;         ///< metres
+
+  DiskLight(std::vector<Triangle> some, vec3 radiance, bool both_sides, vec3 middle, vec3 front, float size)
+      : TriangleLight(std::move(some), radiance, both_sides), center(middle), normal(front), radius(size) {}
+};
+
+/// A glowing parallelogram with a picture on it: one radiance a texel, no blending, so that sampling by
+/// luminance follows it exactly.
+struct TexturedLight : Light {
+  vec3 corner, u,
+      v;  ///< the picture's lower left, metres; its lower and left edge. The front shows along u x v
+  int width, height;         ///< texels
+  std::vector<vec3> texels;  ///< radiance, W m^-2 sr^-1, row-major from the top
+  bool two_sided;
+
+  TexturedLight(vec3 lower_left, vec3 right, vec3 up, int columns, int rows, std::vector<vec3> picture,
+                bool both_sides);
+  /// x right and y down, both in [0,1].
+  vec3 texel(vec2 p) const;
+  vec3 mean() const { return mean_; }
+  float area() const { return area_; }
+
+  const char* type() const override { return "textured"; }
+  vec3 power() const override;
+  LightSample sample(vec3 x, vec2 u) const override;
+  vec3 radiance(const LightHit&, vec3) const override;
+  float pdf(vec3, const LightHit&) const override;
+  EmissionSample sample_emission(vec2, vec2) const override;
+  float importance(vec3 x) const override;
+
+ private:
+  vec3 normal_, mean_;
+  float area_, brightest_ = 0;  ///< m^2; luminance
+  Piecewise2D distribution_;    ///< by luminance, over the unit square
 };
 
 struct PictureLight : EnvironmentLight {

@@ -3,6 +3,7 @@
 
 #include "lights/emission_grid.h"
 #include "tests/light_support.h"
+#include "tests/shaped_light_support.h"
 
 namespace zonal {
 namespace {
@@ -46,6 +47,8 @@ TEST(emission, carries_the_flux_that_sampling_receives) {
   expect_same_flux(ball({0.2f, 0.5f, 0.3f}, 3, true), "sphere from inside");
   expect_same_flux(quad({-0.5f, 1, -0.5f}, {1, 0, 0.2f}, {0, 0.1f, 1}), "quad");
   expect_same_flux(quad({-0.5f, 1, -0.5f}, {0, 0.1f, 1}, {1, 0, 0.2f}, true), "two-sided quad");
+  expect_same_flux(bright_panel({-0.5f, 1, -0.5f}, {1, 0, 0.2f}, {0, 0.1f, 1}), "textured");
+  expect_same_flux(bright_panel({-0.5f, 1, -0.5f}, {0, 0.1f, 1}, {1, 0, 0.2f}, true), "two-sided textured");
   EnvironmentLight sky = sunny_sky(0.4f);
   sky.set_scene_bounds({{0.1f, 0.2f, -0.1f}, 2});
   expect_same_flux(sky, "environment");
@@ -69,8 +72,10 @@ TEST(every_light, stays_finite_at_touching_coinciding_and_far_points) {
   const SphereLight sphere = ball(vec3(0), 1), furnace = ball(vec3(0), 1, true),
                     speck = ball(vec3(0), 1e-30f);
   const MeshLight mesh = quad({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, true);
+  const TexturedLight panel = bright_panel({0, 0, 0}, {1, 0, 0}, {0, 0, 1}, true);
   const EnvironmentLight sky = sunny_sky(0);
-  const std::vector<const Light*> lights = {&point, &spot, &sun, &sphere, &furnace, &speck, &mesh, &sky};
+  const std::vector<const Light*> lights = {&point, &spot, &sun,   &sphere, &furnace,
+                                            &speck, &mesh, &panel, &sky};
   const std::vector<vec3> places = {{0, 0, 0},           {1, 0, 0},          {0, 1, 0},
                                     {0.6f, 0.8f, 0},     {1.0000001f, 0, 0}, {0.5f, 0, 0},
                                     {0, 1e-30f, 0},      {1e15f, 0, 0},      {0, -1e25f, 0},

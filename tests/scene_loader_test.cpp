@@ -40,12 +40,12 @@ TEST(scene_loader, a_scene_that_uses_every_key_loads) {
   EXPECT_EQ(nlohmann::json::parse(settings.integrator_json),
             nlohmann::json::parse(R"({"type": "path", "max_bounces": 3})"));
   EXPECT_TRUE(scene.environment());
-  // 9 under "lights"; glow, board, crate, flag; lamp (Ke of room.obj); statue's two shapes; the bulb of
+  // 12 under "lights"; glow, board, crate, flag; lamp (Ke of room.obj); statue's two shapes; the bulb of
   // sail.gltf.
-  EXPECT_EQ(scene.lights().size(), 9u + 4 + 1 + 2 + 1);
+  EXPECT_EQ(scene.lights().size(), 12u + 4 + 1 + 2 + 1);
   // Quads and panels 2 each, box 12, triangles 1: board, crate, flag, room without banner 4, statue without
-  // floor 3, boat, panel, sliver.
-  EXPECT_EQ(scene.triangle_count(), 2u + 12 + 1 + 4 + 3 + 1 + 2 + 1);
+  // floor 3, boat, panel, sliver; hatch 64, arrow and window 2 each.
+  EXPECT_EQ(scene.triangle_count(), 2u + 12 + 1 + 4 + 3 + 1 + 2 + 1 + 64 + 2 + 2);
 }
 
 TEST(scene_loader, the_least_scene_there_is) {

@@ -139,7 +139,10 @@ TEST(schema, lights) {
       {"environment", R"({"type": "environment", "file": "sky.hdr"})"},
       {"sphere", R"({"type": "sphere", "center": [0,0,0], "radius": 1, "power": 1})"},
       {"quad", R"({"type": "quad", "corner": [0,0,0], "edges": [[1,0,0],[0,1,0]], "power": 1})"},
-      {"triangle", R"({"type": "triangle", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "power": 1})"}};
+      {"triangle", R"({"type": "triangle", "vertices": [[0,0,0],[1,0,0],[0,1,0]], "power": 1})"},
+      {"disk", R"({"type": "disk", "center": [0,0,0], "normal": [0,1,0], "radius": 1, "power": 1})"},
+      {"polygon", R"({"type": "polygon", "vertices": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "power": 1})"},
+      {"textured", R"({"type": "textured", "corner": [0,0,0], "edges": [[1,0,0],[0,1,0]], "file": "sky.hdr"})"}};
   for (const auto& [kind, example] : examples)
     expect_same({"light_" + kind}, one("lights", example), "/lights/0");
 }

@@ -31,6 +31,8 @@ void ShDirectParams::visit(ParamVisitor& v) {
            "from which split_error is judged");
   v.number("tolerance", tolerance, {.low = 0, .high = 1, .open_low = true}, "",
            "exact triangles: relative error allowed; those so far that one direction stays below are one");
+  v.number("texture_error", texture_error, {0, 1}, "",
+           "pictures on lights: share of their light that cells of one radiance may move; 0: a cell a texel");
   v.integer_or_auto("grid", grid, {2, 1e6}, "points",
                     "along the longest side of the box around what is seen; auto: by grid_error");
   v.number("grid_error", grid_error, {.low = 0, .high = 1, .open_low = true}, "",
@@ -62,7 +64,7 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   if (zonal && params_.polygons == ShLightOptions::Polygons::exact)
     options.polygons = ShLightOptions::Polygons::main;
   options.split_error = params_.split_error, options.split_distance = params_.split_distance;
-  options.tolerance = params_.tolerance;
+  options.tolerance = params_.tolerance, options.texture_error = params_.texture_error;
   options.shape =
       params_.spheres == ShDirectParams::Spheres::disk ? sh::LightShape::disk : sh::LightShape::sphere;
   const bool ratio = params_.occlusion == ShDirectParams::Occlusion::ratio;

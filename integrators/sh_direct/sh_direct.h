@@ -22,7 +22,7 @@ struct ShDirectParams : ShReceiverParams {
   int rays = 4, groups = 1;
   float reach = 0;  ///< metres; 0: a tenth of the scene's radius
   ShLightOptions::Polygons polygons = ShLightOptions::Polygons::exact;
-  float split_error = 0, split_distance = 1, tolerance = 1e-3f;
+  float split_error = 0, split_distance = 1, tolerance = 1e-3f, texture_error = 0.05f;
   Spheres spheres = Spheres::sphere;
   int grid = 8;  ///< points along the longest side, or kAuto
   float grid_error = 0.01f;

@@ -54,6 +54,8 @@ std::optional<vec3> place_of(const Light* light) {
   if (const auto* sphere = dynamic_cast<const SphereLight*>(light)) return sphere->center;
   if (const auto* point = dynamic_cast<const PointLight*>(light)) return point->position;
   if (const auto* spot = dynamic_cast<const SpotLight*>(light)) return spot->position;
+  if (const auto* picture = dynamic_cast<const TexturedLight*>(light))
+    return picture->corner + 0.5f * (picture->u + picture->v);
   const auto* mesh = dynamic_cast<const TriangleLight*>(light);
   if (!mesh || mesh->triangles.empty()) return {};
   vec3 sum(0);
