@@ -91,7 +91,7 @@ std::function<void()> field(std::shared_ptr<ShLights> lights, ShScheme scheme, i
   return [=] {
     for (int i = 0; i < 512; ++i) {
       const vec3 x = vec3(i % 8, i / 8 % 8, i / 64) * (2 / 7.0f) - 1.0f;
-      compute_grid_point(*lights, scheme, bands, x, 0.01f, out->data());
+      compute_grid_point(*lights, scheme, bands, x, 0.01f, 2 / 7.0f, out->data());
     }
   };
 }

@@ -12,9 +12,14 @@ void ShLights::Arrays::add(vec3 position, vec3 value) {
   for (int c = 0; c < 3; ++c) colour[c].push_back(value[c]);
 }
 
-sh::LightArrays<float> ShLights::Arrays::caps() const {
-  return {count(),  x.data(),      y.data(),
-          z.data(), radius.data(), {colour[0].data(), colour[1].data(), colour[2].data()}};
+sh::LightArrays<float> ShLights::Arrays::caps(float cell) const {
+  return {.count = count(),
+          .x = x.data(),
+          .y = y.data(),
+          .z = z.data(),
+          .radius = radius.data(),
+          .radiance = {colour[0].data(), colour[1].data(), colour[2].data()},
+          .cell = cell};
 }
 
 sh::DiracArrays<float> ShLights::Arrays::diracs() const {
@@ -84,21 +89,21 @@ int ShLights::count() const {
 }
 
 void ShLights::coefficients(int bands, vec3 x, float* L) const {
-  all(bands, x, L, nullptr);
+  all(bands, x, L, nullptr, 0);
 }
 
-void ShLights::gradient(int bands, vec3 x, float* L, float* gradient) const {
-  all(bands, x, L, gradient);
+void ShLights::gradient(int bands, vec3 x, float* L, float* gradient, float cell) const {
+  all(bands, x, L, gradient, cell);
 }
 
 /// `gradient` may be null. `spheres`: with them.
-void ShLights::all(int bands, vec3 x, float* L, float* gradient, bool spheres) const {
+void ShLights::all(int bands, vec3 x, float* L, float* gradient, float cell, bool spheres) const {
   const size_t n = sh::count(bands), fixed = sh::count(options_.bands);
   for (int c = 0; c < 3; ++c) std::copy_n(fixed_.data() + c * fixed, n, L + c * n);
   if (gradient) std::fill_n(gradient, 9 * n, 0.0f);
   if (spheres && spheres_.count() > 0) {
     if (gradient)
-      sh::accumulate_lights_gradient(bands, options_.shape, x, spheres_.caps(), L, gradient);
+      sh::accumulate_lights_gradient(bands, options_.shape, x, spheres_.caps(cell), L, gradient);
     else
       sh::accumulate_lights(bands, options_.shape, x, spheres_.caps(), L);
   }
@@ -107,15 +112,16 @@ void ShLights::all(int bands, vec3 x, float* L, float* gradient, bool spheres) c
   if (exact_.count() > 0) exact_.accumulate(bands, x, options_.tolerance, L, gradient);
   if (triangles_.spheres.count() == 0) return;
   if (options_.polygons == ShLightOptions::Polygons::main)
-    triangles_as_spheres(bands, x, L, gradient);
+    triangles_as_spheres(bands, x, L, gradient, cell);
   else
     triangles_one_by_one(bands, x, L, gradient);
 }
 
-void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian) const {
+void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian,
+                       float cell) const {
   const size_t n = sh::count(bands);
   std::fill_n(hessian, 18 * n, 0.0f);
-  all(bands, x, L, gradient, false);
+  all(bands, x, L, gradient, cell, false);
   if (count() > spheres_.count()) {
     constexpr size_t kPlace[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
     thread_local std::vector<float> ignored, slopes[2];
@@ -123,8 +129,8 @@ void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient,
     for (size_t along = 0; along < 3; ++along) {
       vec3 h(0);
       h[along] = step;
-      all(bands, x + h, ignored.data(), slopes[0].data(), false);
-      all(bands, x - h, ignored.data(), slopes[1].data(), false);
+      all(bands, x + h, ignored.data(), slopes[0].data(), cell, false);
+      all(bands, x - h, ignored.data(), slopes[1].data(), cell, false);
       for (size_t axis = 0; axis < 3; ++axis) {
         // Mixed ones are had twice: the slope along one axis of the derivative for the other.
         const float scale = (axis == along ? 0.5f : 0.25f) / step;
@@ -137,7 +143,7 @@ void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient,
     }
   }
   if (spheres_.count() > 0)
-    sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(), L, gradient, hessian);
+    sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(cell), L, gradient, hessian);
 }
 
 }  // namespace zonal

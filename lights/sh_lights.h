@@ -59,11 +59,13 @@ class ShLights {
   int count() const;
   /// Written, not added: L[c * sh::count(bands) + i].
   void coefficients(int bands, vec3 x, float* L) const;
-  /// Also gradient[(c * 3 + axis) * sh::count(bands) + i], with respect to x.
-  void gradient(int bands, vec3 x, float* L, float* gradient) const;
+  /// Also gradient[(c * 3 + axis) * sh::count(bands) + i], with respect to x. `cell` > 0, metres: that of
+  /// spheres is bounded beside them, for interpolation over so much (sh/light_batch.h).
+  void gradient(int bands, vec3 x, float* L, float* gradient, float cell = 0) const;
   /// Also hessian[(c * 6 + k) * sh::count(bands) + i], second derivatives xx, xy, xz, yy, yz, zz: of spheres
   /// in closed form, of all others by differences of gradients over `step` metres.
-  void hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian) const;
+  void hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian,
+               float cell = 0) const;
 
   /// The zonal product (Eq. 5.14, Sec. 5.2.7) with all lights that have a place: their irradiance, and their
   /// light times lobe times the cosine towards their middle. Triangles are spheres: not for Polygons::exact.
@@ -77,7 +79,7 @@ class ShLights {
     std::vector<float> x, y, z, radius, colour[3], axis_x, axis_y, axis_z, cos_inner, cos_outer;
     int count() const { return static_cast<int>(x.size()); }
     void add(vec3 position, vec3 value);
-    sh::LightArrays<float> caps() const;
+    sh::LightArrays<float> caps(float cell = 0) const;
     sh::DiracArrays<float> diracs() const;
   };
   /// Triangles as spheres (Sec. 4.2).
@@ -93,9 +95,9 @@ class ShLights {
   void add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth);
   float split_error_of(const sh::TriangleSphere<float>&) const;
   void add_environment(const PictureLight&);
-  void all(int bands, vec3 x, float* L, float* gradient, bool spheres = true) const;
-  sh::LightArrays<float> facing_spheres(vec3 x, float* weighted) const;
-  void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const;
+  void all(int bands, vec3 x, float* L, float* gradient, float cell, bool spheres = true) const;
+  sh::LightArrays<float> facing_spheres(vec3 x, float* weighted, float cell = 0) const;
+  void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient, float cell) const;
   void triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const;
 
   ShLightOptions options_;

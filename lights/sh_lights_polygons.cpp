@@ -92,7 +92,7 @@ float ShLights::split_error_of(const sh::TriangleSphere<float>& shape) const {
 /// (Eq. 4.9, 4.10): spheres whose radiance is weighted by the cosine towards x, so that the kernel of spheres
 /// does the work; it takes the cosine's gradient (Eq. 4.11) over the cosine. `weighted`: 6 numbers a
 /// triangle.
-sh::LightArrays<float> ShLights::facing_spheres(vec3 x, float* weighted) const {
+sh::LightArrays<float> ShLights::facing_spheres(vec3 x, float* weighted, float cell) const {
   const Arrays& s = triangles_.spheres;
   const size_t count = s.x.size();
   const auto row = [&](int i) { return weighted + size_t(i) * count; };
@@ -104,18 +104,20 @@ sh::LightArrays<float> ShLights::facing_spheres(vec3 x, float* weighted) const {
     // In its plane a triangle is black, but its slope is not: the smallest cosine whose inverse is a number.
     const float facing = std::max(side * cosine, side == 0 ? 0.0f : 1e-15f);
     for (int c = 0; c < 3; ++c) row(c)[k] = s.colour[c][k] * facing;
-    const vec3 turn = side == 0 ? vec3(0) : (n - w * (cosine * inverse)) * (side * inverse / facing);
+    // Its slope as bounded as that of directions (sh/seen_lanes.h).
+    const float rate = cell > 0 ? std::min(inverse, 1 / cell) : inverse;
+    const vec3 turn = side == 0 ? vec3(0) : (n - w * (cosine * inverse)) * (side * rate / facing);
     for (int axis = 0; axis < 3; ++axis) row(3 + axis)[k] = turn[axis];
   }
-  sh::LightArrays<float> caps = s.caps();
+  sh::LightArrays<float> caps = s.caps(cell);
   for (int i = 0; i < 3; ++i) caps.radiance[i] = row(i), caps.slope[i] = row(3 + i);
   return caps;
 }
 
-void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient) const {
+void ShLights::triangles_as_spheres(int bands, vec3 x, float* L, float* gradient, float cell) const {
   thread_local std::vector<float> weighted;
   weighted.resize(6 * triangles_.spheres.x.size());
-  const sh::LightArrays<float> caps = facing_spheres(x, weighted.data());
+  const sh::LightArrays<float> caps = facing_spheres(x, weighted.data(), cell);
   if (gradient)
     sh::accumulate_lights_gradient(bands, sh::LightShape::sphere, x, caps, L, gradient);
   else

@@ -24,6 +24,10 @@ struct LightArrays {
   /// Where radiance depends on x (a factor of it, the same for all colours): the gradient of its logarithm
   /// with respect to x, 1/m. Null: it does not. For accumulate_lights_gradient alone.
   const T* slope[3] = {nullptr, nullptr, nullptr};
+  /// Metres, > 0: derivatives are for cubic Hermite interpolation over cells of this size and are bounded
+  /// within one cell of a light's surface, where they grow without end but hold over a shorter way
+  /// (seen_lanes.h). 0: as they are.
+  T cell = 0;
 };
 
 /// L[i * lights.count + k] = coefficient i of light k of radiance 1.

@@ -52,6 +52,23 @@ struct SeenLanes {
       dt = -sine2 * sqrt_lanes(narrow(inverse_s2));
       d2t = T(3) * sine2 * cosine * narrow(inverse_s2);
     }
+    if (lights.cell > 0) bound(shape, lights.cell, narrow(r));
+  }
+
+  /// Within one cell h of the surface. A cubic between two ends of a monotone function is monotone where its
+  /// slopes are at most thrice the secant's (Fritsch and Carlson 1980), and t falls with the distance: dt is
+  /// at most 3 (t(d) - t(d + h))/h, d2t, the slope of dt, at most 3 dt/h. Sideways the light turns by 1/d a
+  /// metre, but only over some d: at most 1/h.
+  void bound(LightShape shape, T h, V r) {
+    const V zero = x * 0, d = T(1) / inverse_d, far = d + h, most = zero + T(1) / h;
+    const V ratio = r / (shape == LightShape::sphere ? far : sqrt_lanes(far * far + r * r));
+    const V s2 = ratio < 1 ? ratio * ratio : zero + T(1);
+    const V rate = T(3) * most * (versine - s2 / (sqrt_lanes(T(1) - s2) + T(1)));
+    const auto near = d - (shape == LightShape::sphere ? r : zero) < h;
+    dt = near && dt < -rate ? -rate : dt;
+    const V curve = T(-3) * most * dt;
+    d2t = near && d2t > curve ? curve : d2t;
+    inverse_d = near && inverse_d > most ? most : inverse_d;
   }
 
   static V narrow(D v) { return __builtin_convertvector(v, V); }

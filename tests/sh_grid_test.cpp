@@ -126,6 +126,48 @@ TEST(ShGrid, neighbouring_cells_agree_on_the_face_they_share) {
   }
 }
 
+/// What a cell of side h makes of one sphere of radius 1 whose surface is `gap` from the cell's first corner:
+/// the largest of its coefficients and that of the truth, outside the sphere.
+std::pair<double, double> beside_a_sphere(float h, float gap, Mixed mixed, float cell) {
+  const int bands = 5, n = 3 * sh::count(bands);
+  const vec3 away = glm::normalize(vec3(0.5f, 0.3f, 0.8f));
+  std::vector<std::unique_ptr<Light>> lights;
+  lights.push_back(std::make_unique<SphereLight>(test::ball(-away * (1 + gap), 1)));
+  const ShLights sphere(lights, {.bands = bands});
+  const ShScheme scheme{Interpolation::hermite, mixed};
+  std::vector<float> parts[8], L(n), exact(n);
+  std::array<const float*, 8> corners;
+  for (int k = 0; k < 8; ++k) {
+    parts[k].resize(size_t(scheme.parts()) * n);
+    compute_grid_point(sphere, scheme, bands, h * vec3(k & 1, k >> 1 & 1, k >> 2), 0.03f * h, cell,
+                       parts[k].data());
+    corners[k] = parts[k].data();
+  }
+  double most = 0, truth = 0;
+  for (const vec3 t : points_in_the_cube(300)) {
+    combine(scheme, cell_weights(scheme, t, vec3(h)), corners, n / 3, n / 3, L.data());
+    sphere.coefficients(bands, h * t, exact.data());
+    for (int i = 0; i < n; ++i)
+      most = std::max(most, double(std::abs(L[i]))), truth = std::max(truth, double(std::abs(exact[i])));
+  }
+  return {most, truth};
+}
+
+TEST(ShGrid, a_corner_beside_a_sphere_does_not_spoil_its_cell) {
+  for (const Mixed mixed : {Mixed::differences, Mixed::hessian})
+    for (const float h : {0.2f, 1.0f, 5.0f})
+      for (const float gap : {1e-6f, 1e-4f, 1e-2f}) {
+        const auto [bounded, truth] = beside_a_sphere(h, gap, mixed, h);
+        const double wild = beside_a_sphere(h, gap, mixed, 0).first;
+        SCOPED_TRACE(fmt::format("mixed {} h {} gap {}", int(mixed), h, gap));
+        // Values weigh 1 in all. A slope weighs 4/27 h and is at most 3/h of a coefficient's growth with 1 -
+        // cos a, 2 pi sqrt((2l+1)/4pi) <= 5.3, thrice the L_00 of a hemisphere: 1.33, and sqrt(3) times that
+        // along three axes. Sideways and mixed ones add 4/27 of 3 and less.
+        EXPECT_LT(bounded / truth, 4);
+        if (gap == 1e-6f) EXPECT_GT(wild / truth, 20) << "nothing was bounded";
+      }
+}
+
 TEST(ShGrid, hermite_weights_are_exact_for_cubic_polynomials) {
   // f = 2 + x y z + x^2 y - z^3 with its derivatives, in a box of 0.5 x 2 x 1: all within the tricubic space,
   // and the mixed third derivative, constant here, is what differences find.

@@ -18,15 +18,15 @@ Box Box::around(std::span<const vec3> positions) {
 }
 
 void compute_grid_point(const ShLights& lights, const ShScheme& scheme, int bands, vec3 x, float step,
-                        float* out, float* straight) {
+                        float cell, float* out, float* straight) {
   const int n = sh::count(bands);
   if (scheme.parts() == 1) return lights.coefficients(bands, x, out);
   thread_local std::vector<float> gradient, hessian;
   gradient.resize(9 * size_t(n)), hessian.resize(18 * size_t(n));
   if (scheme.parts() == kCellParts)
-    lights.hessian(bands, x, step, out, gradient.data(), hessian.data());
+    lights.hessian(bands, x, step, out, gradient.data(), hessian.data(), cell);
   else
-    lights.gradient(bands, x, out, gradient.data());
+    lights.gradient(bands, x, out, gradient.data(), cell);
   constexpr int kMixed[3] = {1, 2, 4}, kStraight[3] = {0, 3, 5};  // of xx, xy, xz, yy, yz, zz
   for (int c = 0; c < 3; ++c)
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,10 +77,10 @@ void ShGrid::need(std::span<const vec3> positions) {
 void ShGrid::build(const ShLights& lights, const Stop& stop) {
   const size_t stride = 3 * size_t(scheme_.parts()) * sh::count(bands_);
   values_.resize(wanted_.size() * stride);
-  const float step = 0.03f * std::min({size_.x, size_.y, size_.z});
+  const float cell = std::min({size_.x, size_.y, size_.z});
   tbb::parallel_for(size_t{0}, wanted_.size(), [&](size_t i) {
     if (i % 64 == 0 && stop()) return;
-    compute_grid_point(lights, scheme_, bands_, box_.low + vec3(wanted_[i]) * size_, step,
+    compute_grid_point(lights, scheme_, bands_, box_.low + vec3(wanted_[i]) * size_, 0.03f * cell, cell,
                        values_.data() + i * stride);
   });
 }

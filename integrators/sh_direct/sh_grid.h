@@ -28,10 +28,11 @@ struct Box {
 };
 
 /// What a grid holds of one point, from the lights: scheme.parts() * 3 * n numbers, as sh_cell.h has them.
-/// `step`: metres, of the differences where a Hessian has no closed form. `straight`, where it is not null
-/// and the scheme takes the Hessian: xx, yy, zz, at (axis * 3 + c) * n.
+/// `step`: metres, of the differences where a Hessian has no closed form. `cell`: metres, over which
+/// derivatives beside spheres are bounded; 0: nowhere. `straight`, where it is not null and the scheme takes
+/// the Hessian: xx, yy, zz, at (axis * 3 + c) * n.
 void compute_grid_point(const ShLights& lights, const ShScheme& scheme, int bands, vec3 x, float step,
-                        float* out, float* straight = nullptr);
+                        float cell, float* out, float* straight = nullptr);
 
 class ShGrid {
  public:

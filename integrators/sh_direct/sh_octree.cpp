@@ -76,7 +76,7 @@ void ShOctree::compute_new_points(const ShLights& lights, const Stop& stop) {
   values_.resize(lattice_.size() * stride_), straight_.resize(lattice_.size() * straight);
   tbb::parallel_for(computed_, static_cast<int>(lattice_.size()), [&](int slot) {
     if (slot % 64 == 0 && stop()) return;
-    compute_grid_point(lights, kScheme, bands_, low_ + vec3(lattice_[slot]) * step_, 16 * step_,
+    compute_grid_point(lights, kScheme, bands_, low_ + vec3(lattice_[slot]) * step_, 16 * step_, 0,
                        values_.data() + size_t(slot) * stride_, straight_.data() + size_t(slot) * straight);
   });
   computed_ = static_cast<int>(lattice_.size());
