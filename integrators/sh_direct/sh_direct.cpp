@@ -112,7 +112,8 @@ void ShDirectIntegrator::refuse_too_large_a_grid() const {
 void ShDirectIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStats& stats) {
   if (scene_ != &pass.scene) load(pass.scene, stop, stats);
   if (params_.at == ShDirectParams::At::pixel) return;
-  const ShSeen seen = look_around(pass.scene, pass.camera, stop);
+  ShSeen seen = look_around(pass.scene, pass.camera, stop);
+  if (searches()) thin_probes(seen);
   if (params_.at == ShDirectParams::At::octree) {
     for (Group& group : groups_) build_octree(group, seen, stop, stats);
     return;
@@ -122,6 +123,19 @@ void ShDirectIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStat
   build_grids(seen, seen.positions, chosen_, stop);
   stats.numbers["grid"] = chosen_;
   stats.numbers["grid_points"] = groups_[0].grid.built_points();
+}
+
+/// Whether this pass has to find its grid or octree first.
+bool ShDirectIntegrator::searches() const {
+  if (params_.at == ShDirectParams::At::grid) return params_.grid == kAuto && chosen_ == 0;
+  return params_.octree_points == 0 && groups_[0].octree_points == 0;
+}
+
+void ShDirectIntegrator::thin_probes(ShSeen& seen) const {
+  std::vector<const ShLights*> lights;
+  for (const Group& group : groups_) lights.push_back(&group.lights);
+  constexpr int kProbes = 256;
+  seen.thin(kProbes, lights);
 }
 
 /// Cells are cubes, or nearly: the shorter sides have as many points as keep them so.
@@ -141,14 +155,16 @@ void ShDirectIntegrator::build_grids(const ShSeen& seen, std::span<const vec3> w
 /// What the probes reflect of the groups' lights as it is interpolated against `exact`: RMSE over mean.
 double ShDirectIntegrator::probed_error(const ShSeen& seen, std::span<const vec3> exact,
                                         std::span<const Group> groups) const {
-  double squares = 0, sum = 0;
+  double squares = 0, sum = 0, weights = 0;
   for (size_t i = 0; i < exact.size(); ++i) {
+    const double weight = seen.probes[i].weight;
     vec3 off = -exact[i];
     for (const Group& group : groups)
       off += reflected(group, seen.probes[i].surface, seen.probes[i].bsdf, false);
-    squares += glm::dot(off, off), sum += exact[i].x + exact[i].y + exact[i].z;
+    weights += weight, squares += weight * glm::dot(off, off);
+    sum += weight * (double(exact[i].x) + exact[i].y + exact[i].z);
   }
-  return sum > 0 ? std::sqrt(squares * 3 * double(exact.size())) / sum : 0;
+  return sum > 0 ? std::sqrt(squares * 3 * weights) / sum : 0;
 }
 
 namespace {

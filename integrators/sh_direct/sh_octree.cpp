@@ -66,7 +66,7 @@ void ShOctree::take_corners(Node& node) {
   for (int k = 0; k < 8; ++k) {
     const ivec3 p = node.at + octant(k) * node.side;
     const auto [place, fresh] = slots_.try_emplace(key(p), static_cast<int>(lattice_.size()));
-    if (fresh) lattice_.push_back(p);
+    if (fresh) lattice_.push_back(p), cells_.push_back(float(node.side) * step_);
     node.corner[k] = place->second;
   }
 }
@@ -76,7 +76,7 @@ void ShOctree::compute_new_points(const ShLights& lights, const Stop& stop) {
   values_.resize(lattice_.size() * stride_), straight_.resize(lattice_.size() * straight);
   tbb::parallel_for(computed_, static_cast<int>(lattice_.size()), [&](int slot) {
     if (slot % 64 == 0 && stop()) return;
-    compute_grid_point(lights, kScheme, bands_, low_ + vec3(lattice_[slot]) * step_, 16 * step_, 0,
+    compute_grid_point(lights, kScheme, bands_, low_ + vec3(lattice_[slot]) * step_, 16 * step_, cells_[slot],
                        values_.data() + size_t(slot) * stride_, straight_.data() + size_t(slot) * straight);
   });
   computed_ = static_cast<int>(lattice_.size());

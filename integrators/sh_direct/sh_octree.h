@@ -71,6 +71,7 @@ class ShOctree {
   std::vector<Node> nodes_;
   std::vector<vec3> positions_;
   std::vector<ivec3> lattice_;  ///< of each slot
+  std::vector<float> cells_;    ///< of each slot: side of the leaf it was made for, metres
   std::unordered_map<uint64_t, int> slots_;
   std::vector<float> values_, straight_;  ///< of each slot: parts; xx, yy, zz
   int computed_ = 0;                      ///< slots that have values

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/render.h"
 
@@ -10,7 +11,7 @@ namespace zonal {
 
 ShSeen look_around(const Scene& scene, const Camera& camera, const Stop& stop) {
   const int columns = (camera.width + 7) / 8, rows = (camera.height + 7) / 8, tiles = columns * rows;
-  constexpr int kProbes = 256;
+  constexpr int kProbes = 2048;
   std::vector<ShSeen> of_tile(tiles);
   tbb::parallel_for(0, tiles, [&](int index) {
     if (stop()) return;
@@ -36,6 +37,34 @@ ShSeen look_around(const Scene& scene, const Camera& camera, const Stop& stop) {
     all.probes.insert(all.probes.end(), mine.probes.begin(), mine.probes.end());
   }
   return all;
+}
+
+void ShSeen::thin(int count, std::span<const ShLights* const> lights) {
+  std::vector<double> share(probes.size());
+  tbb::parallel_for(size_t{0}, probes.size(), [&](size_t i) {
+    double light = 0;
+    for (const ShLights* some : lights) {
+      float L[3];
+      some->coefficients(1, probes[i].surface.position, L);
+      light += double(L[0]) + L[1] + L[2];
+    }
+    share[i] = light * light;
+  });
+  double total = 0;
+  for (const double s : share) total += s;
+  std::vector<Probe> kept;
+  double before = 0;
+  for (size_t i = 0; i < probes.size(); ++i) {
+    const double even = 1 / double(probes.size()),
+                 wanted = count * (total > 0 ? 0.5 * (even + share[i] / total) : even);
+    // As many copies as steps of 1 lie in its part of the sum.
+    const double copies = std::floor(before + wanted + 0.5) - std::floor(before + 0.5);
+    before += wanted;
+    if (!(copies > 0)) continue;
+    kept.push_back(probes[i]);
+    kept.back().weight = copies / wanted;
+  }
+  probes = std::move(kept);
 }
 
 }  // namespace zonal
