@@ -126,7 +126,8 @@ void triangles() {
           {"spheres", field(of(balls, Polygons::exact), scheme, bands)},
           {"triangles, main", field(of(walls, Polygons::main), scheme, bands)},
           {"triangles, alternative", field(of(walls, Polygons::alternative), scheme, bands)},
-          {"triangles, exact", field(of(walls, Polygons::exact), scheme, bands)}};
+          {"triangles, exact", field(of(walls, Polygons::exact), scheme, bands)},
+          {"triangles, factorized", field(of(walls, Polygons::factorized), scheme, bands)}};
       measure(rows);
       std::printf("648 lights, %d bands, 8^3 points, %s\n", bands,
                   scheme.parts() > 1 ? "coefficients and gradients" : "coefficients");

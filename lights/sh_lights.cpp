@@ -113,6 +113,8 @@ void ShLights::all(int bands, vec3 x, float* L, float* gradient, float cell, boo
   if (triangles_.spheres.count() == 0) return;
   if (options_.polygons == ShLightOptions::Polygons::main)
     triangles_as_spheres(bands, x, L, gradient, cell);
+  else if (options_.polygons == ShLightOptions::Polygons::factorized)
+    triangles_factorized(bands, x, L, gradient);
   else
     triangles_one_by_one(bands, x, L, gradient);
 }
@@ -144,6 +146,24 @@ void ShLights::hessian(int bands, vec3 x, float step, float* L, float* gradient,
   }
   if (spheres_.count() > 0)
     sh::accumulate_lights_hessian(bands, options_.shape, x, spheres_.caps(cell), L, gradient, hessian);
+}
+
+/// Light of degree l falls like d^-(l+2) at most: its fourth derivative times h^4/384, what a cubic leaves,
+/// is (l+2)(l+3)(l+4)(l+5)/384 (h/d)^4 of it, and never more than all. A small cap has the norm Omega
+/// N/sqrt(4 pi).
+float ShLights::missed(int bands, vec3 x, float cell) const {
+  const float N = float(bands), share = (N + 1) * (N + 2) * (N + 3) * (N + 4) / 384;
+  const float h2 = cell * cell;
+  const Arrays& s = spheres_;
+  float squares = 0;
+  for (int k = 0; k < s.count(); ++k) {
+    const float dx = s.x[k] - x.x, dy = s.y[k] - x.y, dz = s.z[k] - x.z, r2 = s.radius[k] * s.radius[k];
+    const float d2 = std::max(dx * dx + dy * dy + dz * dz, r2), near = h2 / d2, sine2 = r2 / d2;
+    const float omega = sine2 / (1 + std::sqrt(1 - sine2)),
+                part = omega * std::min(1.0f, share * near * near);
+    squares += part * part * (sqr(s.colour[0][k]) + sqr(s.colour[1][k]) + sqr(s.colour[2][k]));
+  }
+  return std::sqrt(squares * kPi) * N;  // (2 pi N)^2/(4 pi)
 }
 
 }  // namespace zonal

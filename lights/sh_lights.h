@@ -25,7 +25,7 @@
 namespace zonal {
 
 struct ShLightOptions {
-  enum class Polygons { exact, main, alternative, compromise_radius, compromise_angle };
+  enum class Polygons { exact, main, alternative, compromise_radius, compromise_angle, factorized };
 
   int bands = 5;  ///< most bands that will be asked for: of the environment's projection
   sh::LightShape shape = sh::LightShape::sphere;  ///< disk: spheres as disks that face the point (Eq. 3.29)
@@ -67,6 +67,10 @@ class ShLights {
   void hessian(int bands, vec3 x, float step, float* L, float* gradient, float* hessian,
                float cell = 0) const;
 
+  /// What cubic Hermite interpolation over `cell` metres may miss at x of the spheres beside it, as the norm
+  /// of the coefficients of all colours: where a sphere lies within a cell its corners know nothing of it.
+  float missed(int bands, vec3 x, float cell) const;
+
   /// The zonal product (Eq. 5.14, Sec. 5.2.7) with all lights that have a place: their irradiance, and their
   /// light times lobe times the cosine towards their middle. Triangles are spheres: not for Polygons::exact.
   void zonal(vec3 x, const ShZonalLobe& lobe, vec3* diffuse, vec3* specular) const;
@@ -98,6 +102,7 @@ class ShLights {
   void all(int bands, vec3 x, float* L, float* gradient, float cell, bool spheres = true) const;
   sh::LightArrays<float> facing_spheres(vec3 x, float* weighted, float cell = 0) const;
   void triangles_as_spheres(int bands, vec3 x, float* L, float* gradient, float cell) const;
+  void triangles_factorized(int bands, vec3 x, float* L, float* gradient) const;
   void triangles_one_by_one(int bands, vec3 x, float* L, float* gradient) const;
 
   ShLightOptions options_;

@@ -71,11 +71,11 @@ void ShLights::add_picture(const TexturedLight& light) {
                to = vec2(cell.high.x, light.height - cell.low.y) * scale;
     const auto at = [&](float x, float y) { return light.corner + light.u * x + light.v * y; };
     const vec3 a = at(from.x, from.y), b = at(to.x, from.y), c = at(to.x, to.y), d = at(from.x, to.y);
-    if (options_.polygons != ShLightOptions::Polygons::exact && options_.split_error == 0) {
+    const bool exact = options_.polygons == ShLightOptions::Polygons::exact;
+    if (!exact && options_.polygons != ShLightOptions::Polygons::factorized && options_.split_error == 0) {
       add_flat(0.5f * (a + c), glm::cross(b - a, d - a), cell.mean, light.two_sided);
       continue;
     }
-    const bool exact = options_.polygons == ShLightOptions::Polygons::exact;
     for (const auto& [p, q, r] : {std::array{a, b, c}, {a, c, d}})
       if (exact)
         exact_.add(p, q, r, cell.mean, light.two_sided);

@@ -1,8 +1,10 @@
 /// Triangles of area lights: exact, or as spheres (Mézières 2022, Sec. 4.2).
 
 #include <algorithm>
+#include <map>
 
 #include "lights/sh_lights.h"
+#include "sh/factorized_polygon.h"
 #include "sh/polygon.h"
 
 namespace zonal {
@@ -24,11 +26,15 @@ sh::TriangleMethod method_of(ShLightOptions::Polygons polygons) {
   }
 }
 
+bool as_they_are(ShLightOptions::Polygons polygons) {
+  return polygons == ShLightOptions::Polygons::exact || polygons == ShLightOptions::Polygons::factorized;
+}
+
 }  // namespace
 
 void ShLights::add_mesh(const TriangleLight& light) {
   const auto* disk = dynamic_cast<const DiskLight*>(&light);
-  if (disk && options_.polygons != ShLightOptions::Polygons::exact)
+  if (disk && !as_they_are(options_.polygons))
     return add_flat(disk->center, disk->normal * (kPi * sqr(disk->radius)), light.emission, light.two_sided);
   for (const MeshLight::Triangle& t : light.triangles)
     if (options_.polygons == ShLightOptions::Polygons::exact)
@@ -52,7 +58,8 @@ void ShLights::add_flat(vec3 center, vec3 area, vec3 radiance, bool two_sided) {
 void ShLights::add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_sided, int depth) {
   const sh::TriangleSphere<float> shape = sh::triangle_sphere<float>(a, b, c);
   if (!(shape.radius > 0)) return;
-  if (options_.split_error > 0 && depth < kMostCuts && split_error_of(shape) > options_.split_error) {
+  if (options_.split_error > 0 && depth < kMostCuts && !as_they_are(options_.polygons) &&
+      split_error_of(shape) > options_.split_error) {
     // Cut the longest side.
     const float ab = glm::distance(a, b), bc = glm::distance(b, c), ca = glm::distance(c, a);
     if (bc >= ab && bc >= ca) return add_triangle(b, c, a, radiance, two_sided, depth);
@@ -142,6 +149,22 @@ void ShLights::triangles_one_by_one(int bands, vec3 x, float* L, float* gradient
         for (int i = 0; i < n; ++i) gradient[(c * 3 + axis) * n + i] += radiance * slope[i][axis];
     }
   }
+}
+
+/// The literature's way, for comparison: all triangles on the lobes of a zonal factorisation, made
+/// coefficients once.
+void ShLights::triangles_factorized(int bands, vec3 x, float* L, float* gradient) const {
+  thread_local std::map<int, sh::FactorizedPolygons> of_bands;
+  sh::FactorizedPolygons& sums = of_bands.try_emplace(bands, bands).first->second;
+  sums.start(gradient != nullptr);
+  const Triangles& t = triangles_;
+  for (size_t k = 0; k < t.shapes.size(); ++k) {
+    if (!t.two_sided[k] && !(glm::dot(t.shapes[k].normal, x - t.shapes[k].center) > 0)) continue;
+    glm::dvec3 corners[3];
+    for (int i = 0; i < 3; ++i) corners[i] = glm::dvec3(t.shapes[k].vertices[i]) - glm::dvec3(x);
+    sums.add(3, corners, {t.spheres.colour[0][k], t.spheres.colour[1][k], t.spheres.colour[2][k]});
+  }
+  sums.finish(L, gradient);
 }
 
 }  // namespace zonal

@@ -173,6 +173,7 @@ TEST_F(FlatLights, sh_direct_tends_to_the_path_tracer) {
   // sh_direct_test.cpp. Spheres for triangles as near as these are coarser: Sec. 4.2.
   for (const auto& [settings, most] : {std::pair{R"("polygons": "exact", "texture_error": 0)", 0.02},
                                        {R"("polygons": "exact")", 0.02},
+                                       {R"("polygons": "factorized")", 0.02},
                                        {R"("polygons": "main", "texture_error": 0)", 0.06}}) {
     const double error = reference.error(
         render_with(scene, "sh_direct",

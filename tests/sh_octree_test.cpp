@@ -63,6 +63,41 @@ TEST(ShOctree, beats_a_uniform_grid_of_as_many_points_by_ten_decibels) {
   EXPECT_GT(20 * std::log10(uniform / adaptive), 10);
 }
 
+TEST(ShOctree, what_a_light_within_a_cell_may_cost_is_not_underrated) {
+  // One small sphere in and around a cell of 1 m, the truth at the cell's positions against the tricubic
+  // between its corners: root mean square over positions of the coefficients' norms.
+  const int bands = 5, n = 3 * sh::count(bands);
+  const ShScheme scheme{ShScheme::Interpolation::hermite, ShScheme::Mixed::hessian};
+  std::mt19937 bits(5);
+  std::uniform_real_distribution<float> number(0, 1);
+  for (int trial = 0; trial < 40; ++trial) {
+    const float spread = 1 + 0.1f * float(trial);
+    const vec3 center = 0.5f + spread * (vec3(number(bits), number(bits), number(bits)) - 0.5f);
+    std::vector<std::unique_ptr<Light>> one;
+    one.push_back(std::make_unique<SphereLight>(test::ball(center, 0.05f)));
+    const ShLights light(one, {.bands = bands});
+    std::vector<float> parts[8], L(n), exact(n);
+    std::array<const float*, 8> corners;
+    for (int k = 0; k < 8; ++k) {
+      parts[k].resize(size_t(kCellParts) * n);
+      compute_grid_point(light, scheme, bands, vec3(k & 1, k >> 1 & 1, k >> 2), 0.03f, 1, parts[k].data());
+      corners[k] = parts[k].data();
+    }
+    double error = 0, rated = 0;
+    for (int i = 0; i < 500; ++i) {
+      const vec3 t(number(bits), number(bits), number(bits));
+      combine(scheme, cell_weights(scheme, t, vec3(1)), corners, n / 3, n / 3, L.data());
+      light.coefficients(bands, t, exact.data());
+      for (int c = 0; c < n; ++c) error += sqr(double(L[c]) - exact[c]);
+      rated += sqr(double(light.missed(bands, t, 1)));
+    }
+    // A corner beside the light spoils more of the cell than the places beside it.
+    EXPECT_LT(std::sqrt(error / rated), 2) << center.x << ' ' << center.y << ' ' << center.z;
+    fmt::print("{:.2f} ", std::sqrt(error / rated));
+  }
+  fmt::print("\n");
+}
+
 TEST(ShOctree, stops_where_it_is_told_to) {
   const ShLights lights = near_and_far(3);
   const std::vector<vec3> points = floor_points(500);

@@ -3,9 +3,11 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <vector>
 
 #include "sh/checked_lights.h"
+#include "sh/factorized_polygon.h"
 #include "sh/polygon.h"
 #include "sh/simple_lights.h"
 #include "sh/solid_angle.h"
@@ -326,6 +328,59 @@ TEST(ShCheckedLights, bad_input_is_named_with_its_value_and_range) {
   EXPECT_NE(refusal([&] { checked::polygon_light(3, 3, good, good[0], L); }), "accepted");
   EXPECT_EQ(refusal([&] { checked::polygon_light(3, 3, good, x, L); }), "accepted");
   EXPECT_EQ(refusal([&] { checked::sphere_light(9, x, y, 1.0f, L); }), "accepted");
+}
+
+TEST(FactorizedPolygons, are_the_exact_ones_with_their_gradients) {
+  std::mt19937 bits(9);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const int bands : {1, 4, 9}) {
+    FactorizedPolygons factorized(bands);
+    std::vector<float> L(3 * count(bands)), gradient(9 * count(bands));
+    std::vector<double> truth(L.size()), slopes(gradient.size());
+    factorized.start(true);
+    for (int k = 0; k < 20; ++k) {
+      Polygon p;
+      const dvec3 center(2 * number(bits), 2 * number(bits), 2 * number(bits));
+      for (int i = 0; i < 3; ++i) p.push_back(center + dvec3(number(bits), number(bits), number(bits)));
+      // The last few lie on the axes' planes, wound either way, where lobes may be edge on.
+      if (k > 15) p = {{k - 15.0, 0, 0}, {0, k > 17 ? 2.0 : -2.0, 0}, {0, 0, 1}};
+      const dvec3 colour(1 + number(bits), 1 + number(bits), 1 + number(bits));
+      factorized.add(3, p.data(), colour);
+      std::vector<dvec3> G;
+      const std::vector<double> one = light(bands, p, dvec3(0), &G);
+      for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < count(bands); ++i) {
+          truth[c * count(bands) + i] += colour[c] * one[i];
+          for (int axis = 0; axis < 3; ++axis)
+            slopes[(c * 3 + axis) * count(bands) + i] += colour[c] * G[i][axis];
+        }
+    }
+    factorized.finish(L.data(), gradient.data());
+    // Sums rounded to float; the lobes' conditions are below 10.
+    const std::vector<double> values(L.begin(), L.end()), derivatives(gradient.begin(), gradient.end());
+    EXPECT_LT(worst_of_largest(values.data(), truth.data(), int(truth.size())), 1e-6) << bands;
+    EXPECT_LT(worst_of_largest(derivatives.data(), slopes.data(), int(slopes.size())), 1e-6) << bands;
+  }
+}
+
+TEST(FactorizedPolygons, a_lobe_along_an_edges_normal_is_no_trouble) {
+  // An edge whose plane a lobe's axis is normal to: 1/rho has no part along z there.
+  const int bands = 6;
+  const dvec3 axis = glm::normalize(ZonalFactorization<double>(bands).directions()[5]);
+  const dvec3 side = glm::normalize(glm::cross(axis, dvec3(1, 0, 0))), up = glm::cross(axis, side);
+  for (const double tilt : {0.0, 1e-9, 1e-5, 1e-3}) {
+    const Polygon p = {side * 2.0 + axis * tilt, up * 1.5, side + up + axis};
+    FactorizedPolygons factorized(bands);
+    std::vector<float> L(3 * count(bands)), gradient(9 * count(bands));
+    factorized.start(true);
+    factorized.add(3, p.data(), dvec3(1));
+    factorized.finish(L.data(), gradient.data());
+    std::vector<dvec3> G;
+    light(bands, p, dvec3(0), &G);
+    for (int i = 0; i < count(bands); ++i)
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(gradient[k * count(bands) + i], G[i][k], 1e-6) << tilt << ' ' << i;
+  }
 }
 
 }  // namespace

@@ -23,8 +23,10 @@ void ShDirectParams::visit(ParamVisitor& v) {
             "of neighbouring lights, each with rays of its own (ratio)");
   v.number("reach", reach, {0, 1e9}, "m", "of ambient; 0: a tenth of the scene's radius");
   ShReceiverParams::visit(v);
-  v.choice("polygons", polygons, {"exact", "main", "alternative", "compromise_radius", "compromise_angle"},
-           "triangles of area lights: integrated, or spheres in their place (Eq. 4.9, 4.14, 4.17)");
+  v.choice("polygons", polygons,
+           {"exact", "main", "alternative", "compromise_radius", "compromise_angle", "factorized"},
+           "triangles of area lights: integrated, spheres in their place (Eq. 4.9, 4.14, 4.17), or the "
+           "literature's zonal factorisation");
   v.number("split_error", split_error, {0, 1}, "",
            "spheres for triangles: cut until their coefficients are off by less; 0: one sphere a triangle");
   v.number("split_distance", split_distance, {.low = 0, .high = 1e9, .open_low = true}, "m",
@@ -61,7 +63,8 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   // The zonal product knows caps alone.
   const bool zonal = params_.product == ShDirectParams::Product::zonal;
   if (zonal) refuse_lobeless(scene);
-  if (zonal && params_.polygons == ShLightOptions::Polygons::exact)
+  if (zonal && (params_.polygons == ShLightOptions::Polygons::exact ||
+                params_.polygons == ShLightOptions::Polygons::factorized))
     options.polygons = ShLightOptions::Polygons::main;
   options.split_error = params_.split_error, options.split_distance = params_.split_distance;
   options.tolerance = params_.tolerance, options.texture_error = params_.texture_error;

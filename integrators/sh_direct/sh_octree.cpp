@@ -106,10 +106,23 @@ double ShOctree::error_of(const Node& node) const {
   return sum * sum;
 }
 
-void ShOctree::judge_new_leaves() {
+/// Mean square of what the corners do not see, at a few of the leaf's positions.
+double ShOctree::missed_by(const Node& node, const ShLights& lights) const {
+  constexpr int kTried = 4;
+  const int count = std::min(kTried, node.end - node.begin);
+  double squares = 0;
+  for (int i = 0; i < count; ++i)
+    squares += sqr(double(
+        lights.missed(bands_, positions_[node.begin + (2 * i + 1) * (node.end - node.begin) / (2 * count)],
+                      float(node.side) * step_)));
+  return squares / count;
+}
+
+void ShOctree::judge_new_leaves(const ShLights& lights) {
   tbb::parallel_for(size_t{0}, nodes_.size(), [&](size_t i) {
     Node& node = nodes_[i];
-    if (node.first_child < 0 && node.filled() && node.error < 0) node.error = error_of(node);
+    if (node.first_child < 0 && node.filled() && node.error < 0)
+      node.error = error_of(node) + missed_by(node, lights);
   });
 }
 
@@ -118,7 +131,7 @@ void ShOctree::build(const ShLights& lights, int most_points, const std::functio
   for (;;) {
     compute_new_points(lights, stop);
     if (stop()) return;
-    judge_new_leaves();
+    judge_new_leaves(lights);
     const int left = (most_points - points()) / kCornersOfASplit;
     if (left < 1 || good_enough()) break;
 

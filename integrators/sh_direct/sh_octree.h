@@ -57,8 +57,9 @@ class ShOctree {
   void split(int node);
   void take_corners(Node& node);
   void compute_new_points(const ShLights& lights, const Stop& stop);
-  void judge_new_leaves();
+  void judge_new_leaves(const ShLights& lights);
   double error_of(const Node& node) const;
+  double missed_by(const Node& node, const ShLights& lights) const;
   int descend(ivec3 lattice2) const;
   const Node* find(vec3 x, vec3* place) const;
   void close_cracks();
