@@ -39,16 +39,20 @@ class Runner {
     make_references();
     for (const Cell* cell : cells_)
       if (!stopped() && has_references(*cell)) search(*cell);
-    // Shuffled, so that a machine that slows down slows all methods alike; the same order each time the sweep
-    // is resumed.
+    // A cell's runs are spread over the sweep, a round of all cells for each: what slows the machine down for
+    // a while slows one run of each down, not all runs of one. Each round is shuffled, the same way each time
+    // the sweep is resumed.
     std::mt19937 random(12345);
-    std::shuffle(cells_.begin(), cells_.end(), random);
+    for (const Cell* cell : cells_) run_cell(*cell, -1);  // runs none: sees which are finished
     cells_start_ = Clock::now();
-    for (size_t i = 0; i < cells_.size() && !stopped(); ++i) {
-      run_cell(*cells_[i]);
-      baseline();
+    for (round_ = 0; round_ < plan_.runs; ++round_) {
+      std::shuffle(cells_.begin(), cells_.end(), random);
+      for (place_ = 0; place_ < cells_.size() && !stopped(); ++place_) {
+        run_cell(*cells_[place_], round_);
+        if (round_ > 0 || place_ >= 10) baseline();
+      }
     }
-    summary_.left = static_cast<int>(cells_.size()) - summary_.done - summary_.kept - summary_.failed;
+    summary_.left = static_cast<int>(cells_.size() - ended_.size());
     summary_.seconds = seconds_since(start);
     summary_.interrupted = stopped();
     clear_line();
@@ -203,57 +207,74 @@ class Runner {
     return true;
   }
 
-  void run_cell(const Cell& cell) {
-    if (!has_references(cell)) {
-      ++summary_.failed;
-      return;
+  /// A budget in seconds is its own time; fixed work is timed several times.
+  int runs_wanted(const Cell& cell) const {
+    return plan_.budgets[cell.budget].kind == CellBudget::seconds ? 1 : plan_.runs;
+  }
+
+  int runs_left() const {
+    int left = 0;
+    for (size_t i = 0; i < cells_.size(); ++i)
+      if (!ended_.count(cells_[i])) left += std::max(0, runs_wanted(*cells_[i]) - round_ - (i < place_));
+    return left;
+  }
+
+  /// Run number `round` of the cell, where it is not there yet.
+  void run_cell(const Cell& cell, int round) {
+    if (ended_.count(&cell)) return;
+    const auto end = [&](int& count) {
+      ended_.insert(&cell);
+      ++count;
+    };
+    const std::optional<CellWork> work = has_references(cell) ? cell_work(plan_, store_, cell) : std::nullopt;
+    if (!work) return end(summary_.failed);
+    auto record = store_.cell(work->key);
+    if (record && (*record)["status"] == "failed") {
+      if (!options_.retry) return end(summary_.failed);
+      record.reset();
     }
-    const std::optional<CellWork> work = cell_work(plan_, store_, cell);
-    if (!work) {
-      ++summary_.failed;
-      return;
+    if (!record) record = {{"key", work->key}, {"status", "done"}, {"reason", ""}, {"search", work->search}};
+    std::vector<double> runs = record->value("runs", std::vector<double>());
+    if (static_cast<int>(runs.size()) <= round) {
+      if (!run_once(cell, *work, *record, runs)) return;
+      store_.write_cell(work->key, *record);
+      if ((*record)["status"] == "failed") return end(summary_.failed);
+      ++runs_made_, touched_.insert(&cell);
     }
-    if (const auto record = store_.cell(work->key)) {
-      const bool failed = (*record)["status"] == "failed";
-      if (!failed || !options_.retry) {
-        ++(failed ? summary_.failed : summary_.kept);
-        return;
-      }
-    }
+    if (static_cast<int>(runs.size()) >= runs_wanted(cell))
+      end(touched_.count(&cell) ? summary_.done : summary_.kept);
+  }
+
+  /// Renders the cell and adds its time, or the reason why there is none; false when stopped meanwhile. The
+  /// first run's picture and statistics are the cell's.
+  bool run_once(const Cell& cell, const CellWork& work, json& record, std::vector<double>& runs) {
     say(cell_name(plan_, cell));
-    const std::string folder = store_.cell_folder(work->key);
+    const std::string folder = store_.cell_folder(work.key);
     make_folder(folder);
-    // A budget in seconds is its own time, and loading is not part of it.
-    if (work->seconds == 0) warm_up(cell, work->settings, folder);
-    json record{{"key", work->key}, {"status", "done"}, {"reason", ""}, {"search", work->search}};
-    CellRender what{.settings = work->settings, .passes = work->passes, .seconds = work->seconds};
-    std::vector<double> runs;
-    // A budget in seconds is its own time; fixed work is timed several times.
-    const int wanted = work->seconds > 0 ? 1 : plan_.runs;
-    for (int i = 0; i < wanted && !stopped(); ++i) {
-      what.image = i == 0 ? folder + "/image.exr" : "";
-      what.snapshots = i == 0 && plan_.curve ? folder + "/snapshot" : "";
-      std::string reason;
-      const auto stats = render(cell, what, folder + "/stats.json", &reason);
-      if (stopped()) break;
-      if (!stats) {
-        record["status"] = "failed", record["reason"] = reason;
-        break;
-      }
+    // Loading is not part of a budget in seconds.
+    if (work.seconds == 0) warm_up(cell, work.settings, folder);
+    const bool first = runs.empty();
+    CellRender what{.settings = work.settings, .passes = work.passes, .seconds = work.seconds};
+    if (first) what.image = folder + "/image.exr";
+    if (first && plan_.curve) what.snapshots = folder + "/snapshot";
+    std::string reason;
+    const auto stats = render(cell, what, folder + "/stats.json", &reason);
+    if (stopped()) return false;
+    if (stats) {
       runs.push_back(clocked(*stats));
-      if (i == 0) record["stats"] = *stats;
+      if (first) record["stats"] = *stats;
+      record["time"] = median(runs);
+    } else {
+      record["status"] = "failed", record["reason"] = reason;
     }
-    if (stopped()) return;
     record["runs"] = runs;
-    if (record["status"] == "done") record["time"] = median(runs);
-    store_.write_cell(work->key, record);
-    ++(record["status"] == "done" ? summary_.done : summary_.failed);
+    return true;
   }
 
   /// The cheapest of the first ten cells again, for at most a hundredth of the time: what has become of the
   /// machine's speed.
   void baseline() {
-    if (summary_.done + summary_.kept < 10 || stopped()) return;
+    if (stopped()) return;
     if (!baseline_) choose_baseline();
     if (!baseline_ || seconds_since(last_baseline_) < 100 * baseline_seconds_) return;
     last_baseline_ = Clock::now();
@@ -266,7 +287,7 @@ class Runner {
     fs::remove(store_.folder() + "/baseline-stats.json", error);
     if (!stats) return;
     json drift = read_record(store_.folder() + "/drift.json").value_or(json::array());
-    drift.push_back({{"after", summary_.done + summary_.kept},
+    drift.push_back({{"after", runs_made_},
                      {"ratio", clocked(*stats) / (*store_.cell(work->key))["time"].get<double>()}});
     write_record(store_.folder() + "/drift.json", drift);
   }
@@ -287,14 +308,14 @@ class Runner {
 
   void say(const std::string& what) {
     if (options_.quiet) return;
-    const int gone = summary_.done + summary_.kept + summary_.failed, all = static_cast<int>(cells_.size());
-    std::string left;
-    if (summary_.done > 0) {
-      const double each = seconds_since(cells_start_) / summary_.done;
-      left = fmt::format(", about {} left", duration_text(each * (all - gone)));
-    }
+    int all = 0;
+    for (const Cell* cell : cells_) all += runs_wanted(*cell);
+    const int left = runs_left();
+    std::string time;
+    if (runs_made_ > 0)
+      time = fmt::format(", about {} left", duration_text(seconds_since(cells_start_) / runs_made_ * left));
     clear_line();
-    fmt::print(stderr, "{}/{}{}: {}{}", gone, all, left, what, terminal_ ? "" : "\n");
+    fmt::print(stderr, "{}/{} runs{}: {}{}", all - left, all, time, what, terminal_ ? "" : "\n");
     std::fflush(stderr);
   }
   void clear_line() {
@@ -307,6 +328,10 @@ class Runner {
   const bool terminal_ = isatty(2) != 0;
   Clock::time_point cells_start_ = Clock::now();
   std::vector<const Cell*> cells_;
+  int round_ = 0;
+  size_t place_ = 0;  ///< in cells_
+  int runs_made_ = 0;
+  std::set<const Cell*> touched_, ended_;  ///< run here; done, kept or failed
   std::set<std::pair<int, int>> warm_;
   const Cell* baseline_ = nullptr;
   double baseline_seconds_ = 0;  ///< of its process

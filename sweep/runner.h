@@ -4,9 +4,9 @@
 ///     CellStore store(folder, plan);
 ///     const RunSummary summary = run_cells(plan, store, {.program = own_program()});
 ///
-/// Order: references, equal-time and equal-error searches, then the cells, shuffled; a warm-up before the
-/// first cell of each method, and a baseline cell between whiles that tells whether the machine has become
-/// slower.
+/// Order: references, equal-time and equal-error searches, then each cell's first run, then each one's second,
+/// and so on, every round shuffled; a warm-up before the first cell of each method, and a baseline cell between
+/// whiles that tells whether the machine has become slower.
 
 #include <atomic>
 #include <string>

@@ -6,7 +6,10 @@
 #include <algorithm>
 
 #include "integrators/hvl/hvl.h"
+#include "materials/measured_brdf.h"
+#include "materials/sh_projector.h"
 #include "tests/measured_files.h"
+#include "tests/mesh_files.h"
 #include "tests/support.h"
 
 namespace zonal {
@@ -46,6 +49,40 @@ TEST(HvlEmission, a_matt_surface_does_not_depend_on_bands) {
   // 40 lights, each a few operations of 6e-8: 1e-5 leaves room.
   for (size_t i = 0; i < six.pixels.size(); ++i)
     EXPECT_NEAR(automatic.pixels[i], six.pixels[i], 1e-5f * peak);
+}
+
+// Rough, with a share of what is stored that does not fall towards the horizon, where F is that over the
+// cosine: most bands of F describe what the cosine then takes away.
+TEST(HvlEmission, a_steep_horizon_does_not_cost_bands) {
+  const test::Folder folder;
+  const std::string file = folder.path("steep_rgb.bsdf");
+  test::rgl_tensors({.surface = {0.9, 0.9}, .least = 0.02}).write(file);
+  const auto brdf = load_measured(file);
+  const Bsdf bsdf{.kind = BsdfKind::measured, .measured = brdf.get()};
+  constexpr int kMany = 24;
+  int cosine_bands = 0, brdf_bands = 0;
+  for (const double degrees : {0.0, 30.0, 60.0}) {
+    const BandStudy study = study_bands(bsdf, glm::radians(degrees), kMany);
+    const auto needed = [&](ShTable table) { return BandStudy::bands(study.spherical[int(table)], 0.95); };
+    cosine_bands = std::max(cosine_bands, needed(ShTable::brdf_cosine));
+    const int own = needed(ShTable::brdf);
+    brdf_bands = std::max(brdf_bands, own == 0 ? kMany : own);
+  }
+  ASSERT_GE(brdf_bands, 4 * cosine_bands) << "not the surface this test is about";
+
+  const Scene scene = lit_floor(R"("type": "measured", "file": ")" + file + "\"");
+  const Image automatic = with_emission(scene, "\"auto\""),
+              few = with_emission(scene, std::to_string(cosine_bands)),
+              many = with_emission(scene, std::to_string(kMany));
+  const float peak = max_component(few.rgb(4, 4));
+  float to_few = 0, to_many = 0;
+  for (size_t i = 0; i < few.pixels.size(); ++i) {
+    to_few = std::max(to_few, std::abs(automatic.pixels[i] - few.pixels[i]) / peak);
+    to_many = std::max(to_many, std::abs(automatic.pixels[i] - many.pixels[i]) / peak);
+  }
+  RecordProperty("bands", fmt::format("F' {} F {}", cosine_bands, brdf_bands));
+  RecordProperty("differences", fmt::format("{} {}", to_few, to_many));
+  EXPECT_LT(to_few, 0.1f * to_many);
 }
 
 // F of the papers and felts spikes in the last degrees and would take 64 bands; F' needs three up to 60

@@ -115,6 +115,7 @@ struct RglSpec {
   int elevations = 9;  ///< slices over theta
   int facets = 33;     ///< vertices per side of vndf
   int side = 17;       ///< of luminance and rgb
+  double least = 0;    ///< of what is stored: above 0 the BRDF is steep at the horizon, as measured ones are
 };
 
 inline Vec rgl_direction(double u_theta, double u_phi) {
@@ -159,7 +160,7 @@ inline TensorWriter rgl_tensors(const RglSpec& spec) {
           const glm::dvec2 u = warp.sample(double(x) / (R - 1), double(y) / (R - 1));
           const Vec m = rgl_direction(u.x, u.y);
           const Vec in = 2 * glm::dot(m, out) * m - out;
-          colors.push_back(glm::max(s.stored(out, in, m), Vec(0)));
+          colors.push_back(glm::max(s.stored(out, in, m), Vec(spec.least)));
         }
       }
       for (const Vec& c : colors) weights.push_back(float(0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z));

@@ -118,7 +118,7 @@ const Manifest = (() => {
       summary,
       h("p", {class: "note"}, "The same cell, timed between the others: its time over its first one."),
       table(
-        ["after cells", "ratio"],
+        ["after runs", "ratio"],
         checks.map((check) => [String(check.after), check.ratio.toFixed(3)]),
       ),
     );
