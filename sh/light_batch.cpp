@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sh/few_bands.h"
+#include "sh/light_batch_reversed.h"
 #include "sh/seen_lanes.h"
 
 namespace zonal::sh {
@@ -190,6 +191,14 @@ void accumulate(int bands, LightShape shape, const Vec3<T>& p, const LightArrays
   }
 }
 
+/// False beyond 10 bands.
+template <class T, int... N>
+bool accumulate_few_reversed(int bands, LightShape shape, const Vec3<T>& p, const LightArrays<T>& lights,
+                             T* sum, std::integer_sequence<int, N...>) {
+  return ((bands == N + 1 && (accumulate_reversed<T, N + 1, false>(shape, p, lights, sum, nullptr), true)) ||
+          ...);
+}
+
 }  // namespace
 
 template <class T>
@@ -213,7 +222,11 @@ void project_lights(int bands, LightShape shape, const Vec3<T>& x, const LightAr
 }
 
 template <class T>
-void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum) {
+void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum,
+                       LoopOrder order) {
+  if (order == LoopOrder::reverse &&
+      accumulate_few_reversed(bands, shape, x, lights, sum, std::make_integer_sequence<int, 10>{}))
+    return;
   accumulate<T, false>(bands, shape, x, lights, sum, nullptr);
 }
 
@@ -223,9 +236,9 @@ void accumulate_lights_gradient(int bands, LightShape shape, const Vec3<T>& x, c
   accumulate<T, true>(bands, shape, x, lights, sum, gradient);
 }
 
-#define ZONAL_INSTANTIATE(T)                                                                      \
-  template void project_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*);    \
-  template void accumulate_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*); \
+#define ZONAL_INSTANTIATE(T)                                                                                 \
+  template void project_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*);               \
+  template void accumulate_lights<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*, LoopOrder); \
   template void accumulate_lights_gradient<T>(int, LightShape, const Vec3<T>&, const LightArrays<T>&, T*, T*);
 ZONAL_INSTANTIATE(float)
 ZONAL_INSTANTIATE(double)

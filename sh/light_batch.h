@@ -34,9 +34,15 @@ struct LightArrays {
 template <class T>
 void project_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* L);
 
+/// Mézières 2022, section 3.3.3: lights outside and all coefficients inside, or one m after another and
+/// lights inside (light_batch_reversed.h). The sums agree to rounding; beyond 10 bands there is forward
+/// alone.
+enum class LoopOrder { forward, reverse };
+
 /// sum[c * count(bands) + i] += radiance_c times coefficient i, over all lights.
 template <class T>
-void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum);
+void accumulate_lights(int bands, LightShape shape, const Vec3<T>& x, const LightArrays<T>& lights, T* sum,
+                       LoopOrder order = LoopOrder::reverse);
 
 /// The same, and gradient[(c * 3 + axis) * count(bands) + i] += its derivative with respect to x.
 template <class T>

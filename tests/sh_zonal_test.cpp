@@ -9,6 +9,7 @@
 #include "core/glsl.h"
 #include "sh/disk_light.h"
 #include "sh/light_batch.h"
+#include "sh/light_batch_reversed.h"
 #include "sh/simple_lights.h"
 #include "sh/sphere_light.h"
 #include "tests/paths.h"
@@ -228,9 +229,10 @@ void expect_batches_match(double tolerance) {
   for (const int bands : {1, 3, 6, 10, 17}) {
     for (const LightShape shape : {LightShape::sphere, LightShape::disk}) {
       const int size = count(bands);
-      std::vector<T> each(size * n), sum(3 * size), sum2(3 * size), gradient(9 * size);
+      std::vector<T> each(size * n), sum(3 * size), forward(3 * size), sum2(3 * size), gradient(9 * size);
       project_lights(bands, shape, p, lights, each.data());
       accumulate_lights(bands, shape, p, lights, sum.data());
+      accumulate_lights(bands, shape, p, lights, forward.data(), LoopOrder::forward);
       accumulate_lights_gradient(bands, shape, p, lights, sum2.data(), gradient.data());
       std::vector<double> truth(3 * size), slope(9 * size), L(size), column(size);
       std::vector<dvec3> G(size);
@@ -252,8 +254,14 @@ void expect_batches_match(double tolerance) {
             << bands << " " << k;
       }
       EXPECT_LT(worst_of_largest(sum, truth, 3 * size), n * tolerance) << bands;
+      EXPECT_LT(worst_of_largest(forward, truth, 3 * size), n * tolerance) << bands;
       EXPECT_LT(worst_of_largest(sum2, truth, 3 * size), n * tolerance) << bands;
       EXPECT_LT(worst_of_largest(gradient, slope, 9 * size), n * tolerance) << bands;
+      if (bands != 6) continue;
+      std::vector<T> sum3(3 * size), reversed(9 * size);
+      accumulate_reversed<T, 6, true>(shape, p, lights, sum3.data(), reversed.data());
+      EXPECT_LT(worst_of_largest(sum3, truth, 3 * size), n * tolerance);
+      EXPECT_LT(worst_of_largest(reversed, slope, 9 * size), n * tolerance);
     }
   }
 }
