@@ -247,6 +247,31 @@ TEST(ShDirect, the_automatic_window_leaves_nothing_negative) {
   EXPECT_LT(lowest(ShReceiverParams::Window::none), -0.01f);
   // The tables of materials are quadratures with an error of their own.
   EXPECT_GT(lowest(ShReceiverParams::Window::automatic), -2e-3f);
+  EXPECT_GT(lowest(ShReceiverParams::Window::dering), -2e-3f);
+}
+
+TEST(ShDirect, deringing_takes_what_a_points_light_needs) {
+  // Light from all sides needs nothing; one lamp over a grey sky less than the whole kernel.
+  const auto picture = [](const char* sky, const char* window) {
+    const Scene scene = test::scene_from(fmt::format(
+        R"({{"camera": {{"position": [0, 1, 2], "look_at": [0, 0, 0], "resolution": [8, 8]}},
+      "materials": [{{"name": "m", "type": "lambert", "albedo": 0.5}}],
+      "objects": [{{"name": "o", "type": "quad", "corner": [-4, 0, 4], "edges": [[8, 0, 0], [0, 0, -8]], "material": "m"}}],
+      "lights": [{{"type": "sphere", "center": [0, 3, -1], "radius": 0.3, "radiance": 20}}, {{"type": "environment", "radiance": {}}}]}})",
+        sky));
+    return test::render_with(
+        scene, "sh_direct",
+        {.settings = fmt::format(R"({{"window": "{}"}})", window), .width = 8, .height = 8});
+  };
+  EXPECT_LT(relative_rmse(picture("5", "dering"), picture("5", "none")), 1e-6);
+  const double some = relative_rmse(picture("0.1", "dering"), picture("0.1", "none")),
+               all = relative_rmse(picture("0.1", "auto"), picture("0.1", "none"));
+  fmt::print("deringing changes {:.4f}, the whole kernel {:.4f}\n", some, all);
+  EXPECT_LT(some, 0.95 * all);
+  EXPECT_GT(some, 0.01 * all);
+  const Scene scene = test::scene_from(kFewLights);
+  EXPECT_THROW(sh_image(scene, R"({"window": "dering", "windowed": "material"})"), SceneError);
+  EXPECT_THROW(sh_image(scene, R"({"window": "dering", "product": "zonal"})"), SceneError);
 }
 
 TEST(ShDirect, is_the_same_on_any_number_of_threads) {

@@ -63,6 +63,7 @@ void ShDirectIntegrator::load(const Scene& scene, const Stop& stop, PassStats& s
   // The zonal product knows caps alone.
   const bool zonal = params_.product == ShDirectParams::Product::zonal;
   if (zonal) refuse_lobeless(scene);
+  refuse_deringing();
   if (zonal && (params_.polygons == ShLightOptions::Polygons::exact ||
                 params_.polygons == ShLightOptions::Polygons::factorized))
     options.polygons = ShLightOptions::Polygons::main;
@@ -99,6 +100,18 @@ void ShDirectIntegrator::refuse_lobeless(const Scene& scene) const {
       throw SceneError(where_ + ": /product: found \"zonal\", but the material \"" + material->name + "\" " +
                        reason);
   }
+}
+
+void ShDirectIntegrator::refuse_deringing() const {
+  if (params_.window != ShDirectParams::Window::dering) return;
+  const char* beside = params_.product == ShDirectParams::Product::zonal        ? "\"product\": \"zonal\""
+                       : params_.windowed == ShDirectParams::Windowed::material ? "\"windowed\": \"material\""
+                                                                                : nullptr;
+  if (beside)
+    throw SceneError(
+        fmt::format("{}: /window: found \"dering\" beside {}, expected another window: it is a point's "
+                    "light as a whole that is deringed",
+                    where_, beside));
 }
 
 void ShDirectIntegrator::refuse_too_large_a_grid() const {

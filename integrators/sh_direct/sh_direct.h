@@ -58,6 +58,7 @@ class ShDirectIntegrator : public Integrator {
   vec3 reflected(const Surface&, const Bsdf&, Sampler&, TileStats&) const;
   void refuse_too_large_a_grid() const;
   void refuse_lobeless(const Scene&) const;
+  void refuse_deringing() const;
   bool searches() const;
   void thin_probes(ShSeen&) const;
   void build_grids(const ShSeen&, std::span<const vec3> wanted, int points_a_side, const Stop&);

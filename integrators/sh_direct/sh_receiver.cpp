@@ -51,8 +51,10 @@ void ShReceiverParams::visit(ParamVisitor& v) {
             "of the cosine (general, turned, irradiance); 0: as many as the receiver");
   v.choice("diffuse", diffuse, {"same", "irradiance"},
            "shading other than table: diffuse light from the product's mean (Eq. 4.4), or as irradiance");
-  v.choice("window", window, {"none", "hann", "lanczos", "hamming", "auto"},
-           "softens the cut at the last band; auto: nothing is received negatively");
+  v.choice(
+      "window", window, {"none", "hann", "lanczos", "hamming", "auto", "dering"},
+      "softens the cut at the last band; auto: nothing is received negatively, whatever the light; dering: "
+      "as little as each point's light needs for that");
   v.number("window_size", window_size, {0, 1000}, "bands",
            "of hann, lanczos, hamming; 0: the bands there are");
   v.choice("windowed", windowed, {"light", "material"}, "which side is windowed");
@@ -79,6 +81,8 @@ ShReceiver::ShReceiver(const ShReceiverParams& params,
       const Bsdf bsdf = material->at(vec2(0.5f));
       if (has_zonal_lobe(bsdf)) zonal_brdf(bsdf, prepare(bsdf, vec3(0, 0, 1)), 1);
     }
+  if (params.window == ShReceiverParams::Window::dering)
+    for (int count = 1; count <= most_light_bands_; ++count) dering_.emplace_back(count);
   sh::clamped_cosine_zonal(kMostShBands, cosine_.data());
   for (int l = 0; l < kMostShBands; ++l) cosine_[l] *= std::sqrt(4 * kPi / float(2 * l + 1));
   for (int count = 1; count <= kMostShBands; ++count) window(count, windows_[count].data());
@@ -88,6 +92,7 @@ ShReceiver::ShReceiver(const ShReceiverParams& params,
 void ShReceiver::window(int count, float* weights) const {
   using Window = ShReceiverParams::Window;
   if (params_.window == Window::automatic) return sh::positive_weights(count, weights);
+  if (params_.window == Window::dering) return std::fill_n(weights, count, 1.0f), void();
   const double size = params_.window_size > 0 ? params_.window_size : count;
   for (int l = 0; l < count; ++l)
     weights[l] = float(sh::window_weight(static_cast<sh::Window>(params_.window), l, size));
@@ -105,7 +110,18 @@ int ShReceiver::light_bands(const Surface& s, const Bsdf& bsdf) const {
   return std::min(most_light_bands_, bands_of(s, bsdf, s.shading.to_local(s.w_out)));
 }
 
+/// (SHD-12) each colour of the light here is windowed by the least strength that leaves none of it negative:
+/// what a material with as many bands or more makes of it is the material whole times that light, and not
+/// negative either.
 vec3 ShReceiver::shade(const Surface& s, const Bsdf& bsdf, int bands, const float* L) const {
+  if (params_.window != ShReceiverParams::Window::dering) return shade_as_is(s, bsdf, bands, L);
+  float light[3 * kMostCount];
+  std::copy_n(L, 3 * sh::count(bands), light);
+  dering_[bands - 1].apply(light);
+  return shade_as_is(s, bsdf, bands, light);
+}
+
+vec3 ShReceiver::shade_as_is(const Surface& s, const Bsdf& bsdf, int bands, const float* L) const {
   if (params_.shading == ShReceiverParams::Shading::table) return by_table(s, bsdf, bands, L);
   return by_product(s, bsdf, bands, L);
 }

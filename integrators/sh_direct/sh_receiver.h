@@ -15,13 +15,14 @@
 #include "core/stop.h"
 #include "lights/sh_lights.h"
 #include "materials/sh_materials.h"
+#include "sh/quick_dering.h"
 
 namespace zonal {
 
 struct ShReceiverParams {
   enum class Shading { table, cosine, general, turned };
   enum class Diffuse { same, irradiance };
-  enum class Window { none, hann, lanczos, hamming, automatic };
+  enum class Window { none, hann, lanczos, hamming, automatic, dering };
   enum class Windowed { light, material };
   enum class Product { sh, zonal };
 
@@ -57,6 +58,7 @@ class ShReceiver {
  private:
   int bands_of(const Surface&, const Bsdf&, vec3 w_out) const;
   void window(int count, float* weights) const;
+  vec3 shade_as_is(const Surface&, const Bsdf&, int bands, const float* L) const;
   vec3 by_irradiance(vec3 normal, int bands, const float* L) const;
   vec3 by_table(const Surface&, const Bsdf&, int bands, const float* L) const;
   vec3 by_product(const Surface&, const Bsdf&, int bands, const float* L) const;
@@ -65,6 +67,7 @@ class ShReceiver {
   ShMaterials materials_;
   int most_light_bands_ = 1;
   std::array<std::array<float, kMostShBands>, kMostShBands + 1> windows_{};  ///< by number of bands
+  std::vector<sh::QuickDering> dering_;                                      ///< by number of bands less one
   std::array<float, kMostShBands>
       cosine_{};  ///< of the clamped cosine: sqrt(4pi/(2l+1)) times its zonal coefficient
 };
