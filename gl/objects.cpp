@@ -31,20 +31,23 @@ void Buffer::read(std::span<std::byte> out) const {
   glGetNamedBufferSubData(id_, 0, static_cast<GLsizeiptr>(out.size()), out.data());
 }
 
-TextureBuffer::TextureBuffer(std::span<const std::byte> bytes, unsigned format) : buffer_(bytes) {
+TextureBuffer::TextureBuffer(Buffer buffer, unsigned format) : buffer_(std::move(buffer)) {
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &id_);
   glTextureBuffer(id_, format, buffer_.id());
 }
-TextureBuffer::TextureBuffer(std::span<const vec4> texels)
-    : TextureBuffer(std::as_bytes(texels), GL_RGBA32F) {}
-TextureBuffer::TextureBuffer(std::span<const uint32_t> words)
-    : TextureBuffer(std::as_bytes(words), GL_R32UI) {}
+TextureBuffer::TextureBuffer(std::span<const vec4> texels) : TextureBuffer(Buffer(texels), GL_RGBA32F) {}
+TextureBuffer::TextureBuffer(std::span<const uint32_t> words) : TextureBuffer(Buffer(words), GL_R32UI) {}
+TextureBuffer::TextureBuffer(size_t texels) : TextureBuffer(Buffer(texels * sizeof(vec4)), GL_RGBA32F) {}
 TextureBuffer::~TextureBuffer() {
   if (id_) glDeleteTextures(1, &id_);
 }
 TextureBuffer& TextureBuffer::operator=(TextureBuffer&& other) noexcept {
   std::swap(buffer_, other.buffer_), std::swap(id_, other.id_);
   return *this;
+}
+void TextureBuffer::clear() const {
+  const float nothing = 0;
+  glClearNamedBufferData(buffer_.id(), GL_R32F, GL_RED, GL_FLOAT, &nothing);
 }
 void TextureBuffer::bind(unsigned unit) const {
   glBindTextureUnit(unit, id_);

@@ -42,15 +42,20 @@ class TextureBuffer {
   TextureBuffer() = default;
   explicit TextureBuffer(std::span<const vec4> texels);
   explicit TextureBuffer(std::span<const uint32_t> words);
+  /// Of four floats each, uninitialised, for shaders to write.
+  explicit TextureBuffer(size_t texels);
   ~TextureBuffer();
   TextureBuffer(TextureBuffer&& other) noexcept { *this = std::move(other); }
   TextureBuffer& operator=(TextureBuffer&& other) noexcept;
   void bind(unsigned unit) const;
+  void bind_storage(unsigned binding) const { buffer_.bind_storage(binding); }
+  void clear() const;  ///< to zero
+  size_t bytes() const { return buffer_.bytes(); }
   /// The most texels a texture buffer may have here.
   static size_t limit();
 
  private:
-  TextureBuffer(std::span<const std::byte> bytes, unsigned format);
+  TextureBuffer(Buffer buffer, unsigned format);
   Buffer buffer_;
   unsigned id_ = 0;
 };

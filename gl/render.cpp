@@ -8,13 +8,12 @@
 #include "gl/direct.h"
 #include "gl/timer.h"
 #include "gl/twin.h"
-#include "integrators/many_lights.h"
 
 namespace zonal::gl {
 namespace {
 
 /// Adds the pass' picture to the film.
-void add_pass(const Scene& scene, const Camera& camera, vec2 inside, const GBuffer& points, bool with_direct,
+void add_pass(const Scene& scene, const Camera& camera, vec2 inside, const GBuffer& points, bool with_glow,
               const Texture2D& direct, const Texture2D& sum, Film& film) {
   const std::vector<GBuffer::Pixel> pixels = points.read();
   const std::vector<vec4> gathered = sum.read_rgba(), lit = direct.read_rgba();
@@ -25,8 +24,8 @@ void add_pass(const Scene& scene, const Camera& camera, vec2 inside, const GBuff
       const size_t i = static_cast<size_t>(y) * film.width() + x;
       const GBuffer::Pixel& p = pixels[i];
       vec3 radiance = vec3(lit[i]) + glm::max(vec3(gathered[i]), vec3(0));
-      if (with_direct) radiance += p.emitted;
-      if (with_direct && p.depth == 0 && sky) {
+      if (with_glow) radiance += p.emitted;
+      if (with_glow && p.depth == 0 && sky) {
         const vec3 w = camera.direction(vec2(x, y) + inside);
         radiance = sky->radiance({.normal = w}, -w);
       }
@@ -52,8 +51,7 @@ RenderReport render(const Context& context, const ShaderText& text, const Scene&
   const Stop stop(options.stop, Clock::time_point::max());
   const auto twin = make_twin(method, text, cpu, scene);
   std::optional<DirectLight> direct;
-  const auto* many = dynamic_cast<const ManyLights*>(&cpu);
-  if (many && many->shared().direct == ManyLightsParams::Direct::sampled) direct.emplace(text, scene);
+  if (samples_direct(cpu)) direct.emplace(text, scene);
   cpu.load(scene, stop, report.pass);
   SceneBuffers buffers(scene);
   GBuffer points(text, film.width(), film.height());
@@ -107,7 +105,7 @@ RenderReport render(const Context& context, const ShaderText& text, const Scene&
     report.radiance_seconds += seconds_since(radiance_start);
     spent = report.begin_pass_seconds + report.radiance_seconds;
 
-    add_pass(scene, camera, inside, points, direct.has_value(), direct_sum, sum, film);
+    add_pass(scene, camera, inside, points, shows_glow(cpu), direct_sum, sum, film);
     report.passes = film.passes();
     report.counters.camera_rays += static_cast<uint64_t>(film.width()) * film.height();
     if (on_pass) on_pass(film, spent);

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/scene_loader.h"
 #include "gl/units.h"
-#include "integrators/many_lights.h"
 #include "integrators/table.h"
 
 namespace zonal::gl {
@@ -66,13 +65,12 @@ std::unique_ptr<Integrator> Session::prepare(const std::string& method, const nl
                                              nlohmann::json* values, std::unique_ptr<Twin>* twin,
                                              std::unique_ptr<DirectLight>* direct) {
   nlohmann::json all = settings;
+  const IntegratorRow& row = find_integrator(method, "view");
   if (!all.contains("occlusion")) all["occlusion"] = "none";
-  if (!all.contains("direct") && !shows_all_lights()) all["direct"] = "none";
-  auto integrator = find_integrator(method, "view").make(all, "integrator \"" + method + "\"", values);
+  if (row.has("direct") && !all.contains("direct") && !shows_all_lights()) all["direct"] = "none";
+  auto integrator = row.make(all, "integrator \"" + method + "\"", values);
   *twin = make_twin(method, text_, *integrator, scene_);
-  const auto* many = dynamic_cast<const ManyLights*>(integrator.get());
-  if (many && many->shared().direct == ManyLightsParams::Direct::sampled)
-    *direct = std::make_unique<DirectLight>(text_, scene_);
+  if (samples_direct(*integrator)) *direct = std::make_unique<DirectLight>(text_, scene_);
   PassStats stats;
   integrator->load(scene_, {}, stats);
   const Pass pass{.scene = scene_, .camera = scene_.camera()};
@@ -139,7 +137,7 @@ void Session::show(unsigned framebuffer, int width, int height, float exposure) 
   show_.use();
   show_.set("window", ivec2(width, height));
   show_.set("exposure", exposure);
-  show_.set("with_direct", direct_ ? 1 : 0);
+  show_.set("with_glow", shows_glow(*integrator_) ? 1 : 0);
   glBindVertexArray(frame_->vertex_array);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
@@ -149,8 +147,8 @@ Image Session::radiance() const {
   const std::vector<vec4> sum = frame_->sum.read_rgba(), direct = frame_->direct.read_rgba();
   Image image(frame_->points.width(), frame_->points.height());
   for (size_t i = 0; i < pixels.size(); ++i) {
-    const vec3 value =
-        vec3(direct[i]) + glm::max(vec3(sum[i]), vec3(0)) + (direct_ ? pixels[i].emitted : vec3(0));
+    const vec3 value = vec3(direct[i]) + glm::max(vec3(sum[i]), vec3(0)) +
+                       (shows_glow(*integrator_) ? pixels[i].emitted : vec3(0));
     for (int c = 0; c < 3; ++c) image.pixels[3 * i + c] = value[c];
   }
   return image;

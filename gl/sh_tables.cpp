@@ -3,7 +3,19 @@
 #include <cstring>
 #include <map>
 
+#include "materials/zonal_lobes.h"
+
 namespace zonal::gl {
+
+TextureBuffer zonal_lobe_texels() {
+  std::vector<vec4> texels;
+  for (const bool ggx : {true, false}) {
+    const std::span<const float> rows = zonal_lobe_table(ggx);
+    for (size_t i = 0; i < rows.size(); i += 4)
+      texels.emplace_back(rows[i], rows[i + 1], rows[i + 2], rows[i + 3]);
+  }
+  return TextureBuffer(std::span<const vec4>(texels));
+}
 
 ShTables::ShTables(const ShMaterials& materials, uint32_t count) {
   std::vector<uint32_t> words;

@@ -1,11 +1,14 @@
 #pragma once
-/// A scene's materials on spherical harmonics as integrators/hvl/receive.comp reads them: the .shmat files'
+/// A scene's materials on spherical harmonics as gl/sh_tables.glsl reads them: the .shmat files'
 /// words, as they lie.
 
 #include "gl/objects.h"
 #include "materials/sh_materials.h"
 
 namespace zonal::gl {
+
+/// The tables of zonal lobes as gl/zonal_lobes.glsl reads them.
+TextureBuffer zonal_lobe_texels();
 
 class ShTables {
  public:

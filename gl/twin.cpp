@@ -9,6 +9,7 @@
 #include "gl/units.h"
 #include "integrators/hvl/hvl_gl.h"
 #include "integrators/many_lights.h"
+#include "integrators/sh_direct/sh_direct_gl.h"
 #include "integrators/vpl/vpl_gl.h"
 #include "integrators/vsgl/vsgl_gl.h"
 #include "integrators/vsl/vsl_gl.h"
@@ -21,8 +22,11 @@ struct TwinRow {
   std::unique_ptr<Twin> (*make)(const ShaderText&, Integrator&, const Scene&);
 };
 const std::vector<TwinRow>& rows() {
-  static const std::vector<TwinRow> table = {
-      {"vpl", make_vpl_twin}, {"hvl", make_hvl_twin}, {"vsl", make_vsl_twin}, {"vsgl", make_vsgl_twin}};
+  static const std::vector<TwinRow> table = {{"vpl", make_vpl_twin},
+                                             {"hvl", make_hvl_twin},
+                                             {"vsl", make_vsl_twin},
+                                             {"vsgl", make_vsgl_twin},
+                                             {"sh_direct", make_sh_direct_twin}};
   return table;
 }
 
@@ -44,6 +48,14 @@ std::unique_ptr<Twin> make_twin(const std::string& method, const ShaderText& tex
   throw SceneError(
       fmt::format("--backend gl: found the method \"{}\", which has no GPU twin, expected one of: {}", method,
                   fmt::join(twin_names(), ", ")));
+}
+
+bool samples_direct(const Integrator& cpu) {
+  const auto* many = dynamic_cast<const ManyLights*>(&cpu);
+  return many && many->shared().direct == ManyLightsParams::Direct::sampled;
+}
+bool shows_glow(const Integrator& cpu) {
+  return samples_direct(cpu) || !dynamic_cast<const ManyLights*>(&cpu);
 }
 
 void refuse(const std::string& method, const std::string& key, const std::string& found,

@@ -40,6 +40,10 @@ const std::vector<std::string>& twin_names();
 std::unique_ptr<Twin> make_twin(const std::string& method, const ShaderText& text, Integrator& cpu,
                                 const Scene& scene);
 
+/// Whether the method leaves direct light to DirectLight; and whether its pictures show what glows.
+bool samples_direct(const Integrator& cpu);
+bool shows_glow(const Integrator& cpu);
+
 /// For twins: throws SceneError saying that `key` is `found` and what the GPU side has instead.
 [[noreturn]] void refuse(const std::string& method, const std::string& key, const std::string& found,
                          const std::string& expected);

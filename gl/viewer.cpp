@@ -65,7 +65,9 @@ void Viewer::choose(const std::string& method, const nlohmann::json& settings) {
 
 void Viewer::change_method(const std::string& method) {
   nlohmann::json kept = nlohmann::json::object();
-  for (const char* key : {"lights", "bounces", "direct"}) kept[key] = session.settings()[key];
+  for (const char* key : {"lights", "bounces", "direct"})
+    if (session.settings().contains(key) && find_integrator(method, "view").has(key))
+      kept[key] = session.settings()[key];
   choose(method, kept);
 }
 

@@ -55,6 +55,12 @@ const std::array kTable = {
 
 }  // namespace
 
+bool IntegratorRow::has(const std::string& parameter) const {
+  for (const ParamInfo& p : params())
+    if (p.name == parameter) return true;
+  return false;
+}
+
 std::span<const IntegratorRow> integrator_table() { return kTable; }
 
 const IntegratorRow& find_integrator(const std::string& name, const std::string& where) {

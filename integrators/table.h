@@ -20,6 +20,8 @@ struct IntegratorRow {
   /// parameter's value, defaults included.
   std::unique_ptr<Integrator> (*make)(const nlohmann::json& settings, const std::string& where,
                                       nlohmann::json* values);
+  /// Whether it has a parameter of this name.
+  bool has(const std::string& parameter) const;
 };
 
 std::span<const IntegratorRow> integrator_table();

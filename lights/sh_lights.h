@@ -77,7 +77,6 @@ class ShLights {
   /// The coefficients of all others: parallel light and environment.
   void fixed(int bands, float* L) const;
 
- private:
   /// A structure of arrays; `radiance` of spheres and triangles, intensity of points and spots.
   struct Arrays {
     std::vector<float> x, y, z, radius, colour[3], axis_x, axis_y, axis_z, cos_inner, cos_outer;
@@ -93,6 +92,15 @@ class ShLights {
     std::vector<uint8_t> two_sided;
   };
 
+  /// What is summed, for a copy elsewhere (a GPU).
+  const Arrays& spheres() const { return spheres_; }
+  const Arrays& points() const { return points_; }
+  const Arrays& spots() const { return spots_; }
+  const sh::TriangleBatch<float>& exact_triangles() const { return exact_; }
+  const Triangles& triangles() const { return triangles_; }
+  const ShLightOptions& options() const { return options_; }
+
+ private:
   void add_mesh(const TriangleLight&);
   void add_picture(const TexturedLight&);
   void add_flat(vec3 center, vec3 area, vec3 radiance, bool two_sided);

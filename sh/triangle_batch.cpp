@@ -13,9 +13,6 @@ namespace zonal::sh {
 /// Cubatures of a triangle: points as shares of the two edges from the first corner, weights that sum to 1.
 template <class T>
 struct TriangleBatch<T>::Rules {
-  struct Point {
-    T s, t, weight;
-  };
   struct Rule {
     int degree;
     std::vector<Point> points;
@@ -74,13 +71,18 @@ void TriangleBatch<T>::add(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c,
   two_sided_.push_back(two_sided);
 }
 
-namespace {
+template <class T>
+std::vector<std::vector<typename TriangleBatch<T>::Point>> TriangleBatch<T>::rule_points() {
+  std::vector<std::vector<Point>> points;
+  for (const auto& rule : rules().all) points.push_back(rule.points);
+  return points;
+}
 
-/// Largest e/d that each rule serves, by the bound of the header.
-template <class T, class Rules>
-std::vector<T> reaches(const Rules& rules, int bands, T tolerance) {
+/// By the bound of the header.
+template <class T>
+std::vector<T> TriangleBatch<T>::reaches(int bands, T tolerance) {
   std::vector<T> reach;
-  for (const auto& rule : rules.all) {
+  for (const auto& rule : rules().all) {
     double binomial = 4;
     for (int k = 1; k <= rule.degree + 1; ++k) binomial *= double(bands + 1 + k) / k;
     // The terms fall by half where (l + q + 4)/(q + 2) e/d <= 1/2.
@@ -89,6 +91,8 @@ std::vector<T> reaches(const Rules& rules, int bands, T tolerance) {
   }
   return reach;
 }
+
+namespace {
 
 /// Adds Y(axis) weight, and its gradient for x, to one row a part.
 template <int N, bool kGradient, class T, class V>
@@ -145,7 +149,7 @@ int TriangleBatch<T>::rule_for(int k, const Vec3<T>& x, const T* reach) const {
 
 template <class T>
 int TriangleBatch<T>::near(int bands, const Vec3<T>& x, T tolerance) const {
-  const std::vector<T> reach = reaches<T>(rules(), bands, tolerance);
+  const std::vector<T> reach = reaches(bands, tolerance);
   int found = 0;
   for (int k = 0; k < count(); ++k) found += rule_for(k, x, reach.data()) == int(reach.size());
   return found;
@@ -168,7 +172,7 @@ void TriangleBatch<T>::accumulate(int bands, const Vec3<T>& x, T tolerance, T* s
   thread_local Scratch scratch;
   const Rules& rules = TriangleBatch::rules();
   if (scratch.bands != bands || scratch.tolerance != tolerance)
-    scratch.reach = reaches<T>(rules, bands, tolerance), scratch.bands = bands, scratch.tolerance = tolerance;
+    scratch.reach = reaches(bands, tolerance), scratch.bands = bands, scratch.tolerance = tolerance;
   const int parts = gradient ? 4 : 1, n = sh::count(bands);
   scratch.of_rule.resize(rules.all.size() + 1);
   for (auto& list : scratch.of_rule) list.clear();

@@ -34,6 +34,17 @@ class TriangleBatch {
   int near(int bands, const Vec3<T>& x, T tolerance) const;
 
   const Vec3<T>& corner(int k, int i) const { return corners_[size_t(3 * k + i)]; }
+  Vec3<T> radiance(int k) const { return {colour_[0][k], colour_[1][k], colour_[2][k]}; }
+  bool two_sided(int k) const { return two_sided_[k] != 0; }
+  T extent(int k) const { return extent_[k]; }
+
+  /// The rules, for a copy elsewhere (a GPU): points as shares of the two edges from the first corner, with
+  /// weights that sum to 1; and the largest extent over distance that each serves.
+  struct Point {
+    T s, t, weight;
+  };
+  static std::vector<std::vector<Point>> rule_points();
+  static std::vector<T> reaches(int bands, T tolerance);
 
  private:
   struct Rules;

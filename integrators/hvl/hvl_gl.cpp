@@ -53,7 +53,7 @@ class HvlTwin : public Twin {
     receive_.use();
     receive_.set("size", ivec2(points.width(), points.height()));
     receive_.set("bands", bands_);
-    tables_.bind(units::kMethod + 1, units::kMethod + 2);
+    tables_.bind(units::kMethod + 2, units::kMethod + 3);
     points.bind();
     receivers_.bind_image(2);
     glDispatchCompute((points.width() + 7) / 8, (points.height() + 7) / 8, 1);
@@ -86,13 +86,7 @@ class HvlTwin : public Twin {
     cpu_.window(bands_, window.data());
     if (zonal_) {
       gather_.set("window", std::span<const float>(window));
-      std::vector<vec4> texels;
-      for (const bool ggx : {true, false}) {
-        const std::span<const float> rows = zonal_lobe_table(ggx);
-        for (size_t i = 0; i < rows.size(); i += 4)
-          texels.emplace_back(rows[i], rows[i + 1], rows[i + 2], rows[i + 3]);
-      }
-      lobes_ = TextureBuffer(std::span<const vec4>(texels));
+      lobes_ = zonal_lobe_texels();
       return;
     }
     tables_ = ShTables(cpu_.materials(), materials_);

@@ -46,6 +46,8 @@ void ShDirectParams::visit(ParamVisitor& v) {
   v.choice(
       "mixed", scheme.mixed, {"differences", "hessian", "zero"},
       "where hermite has mixed derivatives from: gradients next to each other, the lights' Hessian, nowhere");
+  v.choice("loops", loops, {"reverse", "forward"},
+           "of a grid on the GPU: an order m of a point at a time, or a point with all its coefficients");
   v.choice("spheres", spheres, {"sphere", "disk"},
            "sphere lights as they are, or as disks that face the point");
 }
@@ -136,7 +138,7 @@ void ShDirectIntegrator::begin_pass(const Pass& pass, const Stop& stop, PassStat
   }
   if (params_.grid != kAuto) chosen_ = params_.grid;
   if (chosen_ == 0) choose_grid(seen, stop, stats);
-  build_grids(seen, seen.positions, chosen_, stop);
+  build_grids(seen, seen.positions, chosen_, !grids_left_empty_, stop);
   stats.numbers["grid"] = chosen_;
   stats.numbers["grid_points"] = groups_[0].grid.built_points();
 }
@@ -156,7 +158,7 @@ void ShDirectIntegrator::thin_probes(ShSeen& seen) const {
 
 /// Cells are cubes, or nearly: the shorter sides have as many points as keep them so.
 void ShDirectIntegrator::build_grids(const ShSeen& seen, std::span<const vec3> wanted, int points_a_side,
-                                     const Stop& stop) {
+                                     bool compute, const Stop& stop) {
   const Box box = Box::around(seen.positions);
   const vec3 extent = box.high - box.low;
   const float cell = max_component(extent) / float(points_a_side - 1);
@@ -164,7 +166,7 @@ void ShDirectIntegrator::build_grids(const ShSeen& seen, std::span<const vec3> w
   for (Group& group : groups_) {
     group.grid = ShGrid(box, points, params_.scheme, receiver_.most_light_bands());
     group.grid.need(wanted);
-    group.grid.build(group.lights, stop);
+    if (compute) group.grid.build(group.lights, stop);
   }
 }
 
@@ -197,7 +199,7 @@ void ShDirectIntegrator::choose_grid(const ShSeen& seen, const Stop& stop, PassS
   }
   double error = 0;
   for (chosen_ = 4; !stop(); chosen_ = chosen_ * 4 / 3 + 1) {
-    build_grids(seen, places, chosen_, stop);
+    build_grids(seen, places, chosen_, true, stop);
     error = probed_error(seen, exact, groups_);
     if (error <= params_.grid_error || chosen_ > kMostGrid) break;
   }

@@ -16,6 +16,7 @@ struct ShDirectParams : ShReceiverParams {
   enum class At { pixel, grid, octree };
   enum class Occlusion { none, ambient, ratio };
   enum class Spheres { sphere, disk };
+  enum class Loops { reverse, forward };
 
   At at = At::pixel;
   Occlusion occlusion = Occlusion::none;
@@ -27,6 +28,7 @@ struct ShDirectParams : ShReceiverParams {
   int grid = 8;  ///< points along the longest side, or kAuto
   float grid_error = 0.01f;
   int octree_points = 0;  ///< 0: by grid_error
+  Loops loops = Loops::reverse;
   ShScheme scheme;
 
   void visit(ParamVisitor& v);
@@ -45,6 +47,14 @@ class ShDirectIntegrator : public Integrator {
   void begin_pass(const Pass&, const Stop&, PassStats&) override;
   void shade(const Tile&, vec3* radiance, Sampler*, const Stop&, TileStats&) const override;
 
+  /// For a twin on a GPU, after `begin_pass`; without occlusion there is one group of lights.
+  const ShDirectParams& params() const { return params_; }
+  const ShReceiver& receiver() const { return receiver_; }
+  const ShLights& lights() const { return groups_[0].lights; }
+  const ShGrid& grid() const { return groups_[0].grid; }
+  /// From now on begin_pass lays a grid out and leaves its points to the twin; `shade` is not to be called.
+  void leave_grids_empty() { grids_left_empty_ = true; }
+
  private:
   /// Lights that share rays, and what they light.
   struct Group {
@@ -61,7 +71,8 @@ class ShDirectIntegrator : public Integrator {
   void refuse_deringing() const;
   bool searches() const;
   void thin_probes(ShSeen&) const;
-  void build_grids(const ShSeen&, std::span<const vec3> wanted, int points_a_side, const Stop&);
+  void build_grids(const ShSeen&, std::span<const vec3> wanted, int points_a_side, bool compute,
+                   const Stop&);
   void choose_grid(const ShSeen&, const Stop&, PassStats&);
   void build_octree(Group&, const ShSeen&, const Stop&, PassStats&);
   double probed_error(const ShSeen&, std::span<const vec3> exact, std::span<const Group> groups) const;
@@ -72,6 +83,7 @@ class ShDirectIntegrator : public Integrator {
   ShReceiver receiver_;
   std::vector<Group> groups_;
   int lights_ = 0;  ///< in all groups
+  bool grids_left_empty_ = false;
   int chosen_ = 0;  ///< points along the grid's longest side, once `auto` has found them
 };
 

@@ -80,7 +80,7 @@ void ShGrid::build(const ShLights& lights, const Stop& stop) {
   const float cell = std::min({size_.x, size_.y, size_.z});
   tbb::parallel_for(size_t{0}, wanted_.size(), [&](size_t i) {
     if (i % 64 == 0 && stop()) return;
-    compute_grid_point(lights, scheme_, bands_, box_.low + vec3(wanted_[i]) * size_, 0.03f * cell, cell,
+    compute_grid_point(lights, scheme_, bands_, place(int(i)), 0.03f * cell, cell,
                        values_.data() + i * stride);
   });
 }

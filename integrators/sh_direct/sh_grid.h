@@ -51,6 +51,12 @@ class ShGrid {
 
   int built_points() const { return static_cast<int>(wanted_.size()); }
   vec3 cell_size() const { return size_; }
+  /// Where things are, for a copy elsewhere (a GPU): the first corner, points along each axis, the place of
+  /// each slot's values, and each point's slot, x fastest, -1 where nobody needs it.
+  vec3 low() const { return box_.low; }
+  ivec3 points() const { return points_; }
+  vec3 place(int slot) const { return box_.low + vec3(wanted_[slot]) * size_; }
+  const std::vector<int>& slots() const { return slots_; }
 
  private:
   bool locate(vec3 x, ivec3* cell, vec3* t) const;

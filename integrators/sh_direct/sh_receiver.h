@@ -50,6 +50,9 @@ class ShReceiver {
   /// Bands of light that change what the point reflects, 1 .. most_light_bands().
   int light_bands(const Surface&, const Bsdf&) const;
   int most_light_bands() const { return most_light_bands_; }
+  /// What it shades with, for a copy elsewhere (a GPU): materials and the window of so many bands.
+  const ShMaterials& materials() const { return materials_; }
+  const float* window_of(int bands) const { return windows_[bands].data(); }
   /// Radiance towards the camera, W m^-2 sr^-1; negative where the bands ring. `L` has `bands` bands.
   vec3 shade(const Surface&, const Bsdf&, int bands, const float* L) const;
   /// The same by the zonal product, straight from the lights.

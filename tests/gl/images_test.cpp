@@ -2,16 +2,19 @@
 // the same primitive; and what the command says where there is no twin.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/metrics.h"
 #include "core/scene_impl.h"
+#include "core/scene_loader.h"
 #include "gl/direct.h"
 #include "gl/gbuffer.h"
 #include "gl/render.h"
 #include "gl/twin.h"
 #include "tests/gl/support.h"
+#include "tests/paths.h"
 #include "tests/support.h"
 
 namespace zonal {
@@ -56,6 +59,18 @@ Agreement agreement(const Scene& scene, const std::vector<gl::GBuffer::Pixel>& p
 }
 
 const char* kScenes[] = {"furnace", "sphere_over_plane", "box_lit_by_sphere", "cornell", "atrium"};
+
+/// "cornell", or "direct_lights/moving" with the folder.
+Scene scene_of(const std::string& name) {
+  if (name.find('/') == std::string::npos) return test::bundled_scene(name);
+  return load_scene(test::source_dir() + "/scenes/" + name + ".json");
+}
+
+/// For names of tests.
+std::string word(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
 
 class PointsOnTheGpu : public testing::TestWithParam<const char*> {};
 
@@ -115,7 +130,7 @@ class TwinPictures : public testing::TestWithParam<std::tuple<TwinCase, const ch
 TEST_P(TwinPictures, agree) {
   if (!test::gl_context()) GTEST_SKIP() << test::no_gl_reason();
   const auto& [twin, scene_name] = GetParam();
-  const Scene scene = test::bundled_scene(scene_name);
+  const Scene scene = scene_of(scene_name);
   const auto make = [&] {
     return find_integrator(twin.method, "test").make(nlohmann::json::parse(twin.settings), "test", nullptr);
   };
@@ -147,8 +162,46 @@ TEST_P(TwinPictures, agree) {
 INSTANTIATE_TEST_SUITE_P(bundled, TwinPictures,
                          testing::Combine(testing::ValuesIn(kTwins), testing::ValuesIn(kScenes)),
                          [](const auto& info) {
-                           return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
+                           return word(std::string(std::get<0>(info.param).name) + "_" +
+                                       std::get<1>(info.param));
                          });
+
+const TwinCase kShDirect[] = {
+    {"table", "sh_direct", "{}"},
+    {"many_bands", "sh_direct", R"({"light_bands": 9})"},
+    {"cosine", "sh_direct",
+     R"({"shading": "cosine", "bands": 5, "spheres": "disk", "diffuse": "irradiance"})"},
+    {"general", "sh_direct", R"({"shading": "general", "bands": 4, "light_bands": 3, "polygons": "main"})"},
+    {"turned", "sh_direct",
+     R"({"shading": "turned", "bands": 5, "cosine_bands": 3, "window": "auto", "windowed": "material"})"},
+    {"zonal", "sh_direct", R"({"product": "zonal", "polygons": "main", "window": "hann"})"},
+    {"grid_linear", "sh_direct", R"({"at": "grid", "interpolation": "linear", "grid": 6})"},
+    {"grid_taylor_forward", "sh_direct",
+     R"({"at": "grid", "interpolation": "taylor", "grid": 6, "loops": "forward", "polygons": "main"})"},
+    {"grid_hermite", "sh_direct", R"({"at": "grid", "light_bands": 6})"},
+    {"grid_hermite_forward", "sh_direct",
+     R"({"at": "grid", "light_bands": 4, "loops": "forward", "mixed": "zero"})"}};
+/// Named by case and scene.
+std::string case_name(const testing::TestParamInfo<std::tuple<TwinCase, const char*>>& info) {
+  return word(std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(sh_direct, TwinPictures,
+                         testing::Combine(testing::ValuesIn(kShDirect),
+                                          testing::Values("cornell", "direct_lights/spheres_30")),
+                         case_name);
+INSTANTIATE_TEST_SUITE_P(
+    sh_direct_everywhere, TwinPictures,
+    testing::Combine(testing::Values(kShDirect[0], kShDirect[8]),
+                     testing::Values("furnace", "sphere_over_plane", "box_lit_by_sphere", "atrium",
+                                     "direct_lights/moving", "direct_lights/near_and_far",
+                                     "direct_lights/spheres_242", "direct_lights/spheres_512")),
+    case_name);
+// Exact triangles of these two take a software renderer a minute at pixels.
+INSTANTIATE_TEST_SUITE_P(
+    sh_direct_triangles, TwinPictures,
+    testing::Combine(testing::Values(TwinCase{"main", "sh_direct", R"({"polygons": "main"})"}),
+                     testing::Values("direct_lights/tessellated_square", "direct_lights/textured_panel")),
+    case_name);
 
 /// Both backends' pictures with direct light.
 struct Pair {

@@ -7,7 +7,7 @@
 #include "integrators/vsl/vsl.glsl"
 #include "sh/attenuation.glsl"
 #endif
-#if SUBJECT == 0 || SUBJECT == 2 || SUBJECT == 3
+#if SUBJECT == 0 || SUBJECT == 2 || SUBJECT == 3 || SUBJECT == 8
 #include "sh/basis.glsl"
 #include "sh/sphere_light.glsl"
 #endif
@@ -21,6 +21,9 @@
 #if SUBJECT == 0 || SUBJECT == 3
 #include "materials/zonal_lobes.glsl"
 #include "integrators/hvl/hvl.glsl"
+#endif
+#if SUBJECT == 0 || SUBJECT == 8
+#include "integrators/sh_direct/sh_direct.glsl"
 #endif
 #if SUBJECT == 0 || SUBJECT == 4 || SUBJECT == 5
 #include "integrators/vsgl/spherical_gaussian.glsl"
@@ -86,4 +89,8 @@ KERNEL ZonalCap case_cap(CaseInput c) {
 
 #if SUBJECT == 0 || SUBJECT == 6
 #include "tests/gl/cases/shmat.glsl"
+#endif
+
+#if SUBJECT == 0 || SUBJECT == 8
+#include "tests/gl/cases/sh_direct.glsl"
 #endif

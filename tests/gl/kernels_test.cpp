@@ -64,6 +64,7 @@ const KernelCase kCases[] = {ROW(1, vpl_inverse_square, 1),
                              ROW(2, sh_direction, 4),
                              ROW(2, sh_evaluate, 100),
                              ROW(2, sh_evaluate_gradient, 36),
+                             ROW(2, sh_evaluate_order, 32),
                              ROW(2, sh_dot, 1),
                              ROW(2, sh_clamped_cosine, 1),
                              ROW(2, sh_clamped_cosine_product, 100),
@@ -129,7 +130,19 @@ const KernelCase kCases[] = {ROW(1, vpl_inverse_square, 1),
                              ROW(7, brdf_conductor, 1),
                              ROW(7, brdf_ggx, 3),
                              ROW(7, brdf_blinn_phong, 1),
-                             ROW(7, brdf_coat_place, 1)};
+                             ROW(7, brdf_coat_place, 1),
+                             ROW(8, shd_dirac, 4),
+                             ROW(8, shd_sphere, 11),
+                             ROW(8, shd_bounded, 11),
+                             ROW(8, shd_point, 8),
+                             ROW(8, shd_spot, 8),
+                             ROW(8, shd_facing_sphere, 11),
+                             ROW(8, shd_triangle_point, 8),
+                             ROW(8, shd_reflect, 3),
+                             ROW(8, shd_zonal, 2),
+                             ROW(8, shd_linear_cell, 32),
+                             ROW(8, shd_hermite_cell, 32),
+                             ROW(8, shd_difference, 64)};
 
 std::vector<CaseInput> random_inputs() {
   std::mt19937 random(8);

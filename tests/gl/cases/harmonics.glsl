@@ -19,6 +19,17 @@ KERNEL void case_sh_evaluate_gradient(CaseInput c, INOUT(CaseOutput) r) {
     put3(r, 4 * i + 1, gradient.g[i]);
   }
 }
+KERNEL void case_sh_evaluate_order(CaseInput c, INOUT(CaseOutput) r) {
+  ShOrder row;
+  sh_evaluate_order(6, 2, c.d[0], row);
+  for (int l = 2; l < 6; ++l) {
+    int at = 8 * (l - 2);
+    r.v[at] = row.plus[l];
+    r.v[at + 1] = row.minus[l];
+    put3(r, at + 2, row.plus_gradient[l]);
+    put3(r, at + 5, row.minus_gradient[l]);
+  }
+}
 KERNEL void case_sh_dot(CaseInput c, INOUT(CaseOutput) r) {
   ShCoefficients a;
   ShCoefficients b;
