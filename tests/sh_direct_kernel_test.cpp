@@ -101,17 +101,18 @@ TEST(ShDirectKernels, lights_send_what_the_batches_sum) {
                                        value, slope);
         ShdSent sent = shd_sphere(y - x, radius, disk ? 1 : 0);
         if (cell > 0) sent = shd_bounded(sent, radius, disk ? 1 : 0, cell);
-        // Distances in float here, in double there: a few roundings of places of order 1 over 0.25 m.
-        EXPECT_LT(off(Sum(sent), value, slope), 1e-5);
+        // Distances in float here, in double there: two roundings (1.2e-7) of places of order 1 over 0.25 m
+        // are 1e-6 of them, and slopes of degree 4 fall like the seventh power.
+        EXPECT_LT(off(Sum(sent), value, slope), 2e-5);
       }
     const sh::DiracArrays<float> lamp{1,       &y.x,    &y.y,   &y.z,  {&one, &one, &one}, nullptr, &axis.x,
                                       &axis.y, &axis.z, &inner, &outer};
     float value[75] = {}, slope[225] = {};
     sh::accumulate_point_lights(5, x, lamp, value, slope);
-    EXPECT_LT(off(Sum(shd_point(y - x)), value, slope), 1e-5);
+    EXPECT_LT(off(Sum(shd_point(y - x)), value, slope), 2e-5);
     std::fill_n(value, 75, 0.0f), std::fill_n(slope, 225, 0.0f);
     sh::accumulate_spot_lights(5, x, lamp, value, slope);
-    EXPECT_LT(off(Sum(shd_spot(y - x, axis, inner, outer)), value, slope), 1e-5);
+    EXPECT_LT(off(Sum(shd_spot(y - x, axis, inner, outer)), value, slope), 2e-5);
   }
 }
 
