@@ -26,7 +26,7 @@ class GlBackend : public Backend {
                       const std::function<void(const Film&, double)>& on_pass,
                       const std::function<void(const Progress&)>& on_progress) override {
     return gl::render(*context_, gl::ShaderText(), scene, integrator, method, film, budget, options, on_pass,
-                      on_progress);
+                      on_progress, warm_up);
   }
   std::string gpu() const override { return context_->info().renderer; }
 

@@ -21,6 +21,8 @@ class Backend {
                               Film& film, const Budget& budget, const RenderOptions& options,
                               const std::function<void(const Film&, double seconds)>& on_pass,
                               const std::function<void(const Progress&)>& on_progress) = 0;
+  /// A GPU draws each render's first pass once before its clock starts: drivers compile late.
+  bool warm_up = false;
   /// The GPU's name; empty on the CPU.
   virtual std::string gpu() const { return ""; }
 };

@@ -31,6 +31,7 @@ void add_material(CLI::App& app, int* exit_code);
 void add_reference(CLI::App& app, int* exit_code);
 void add_sweep(CLI::App& app, int* exit_code);
 void add_verify(CLI::App& app, int* exit_code);
+void add_flight(CLI::App& app, int* exit_code);
 void add_view(CLI::App& app, int* exit_code);
 
 /// Below `zonal material`.

@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "zonal " ZONAL_VERSION);
   add_render(app, &exit_code);
   add_compare(app, &exit_code);
+  add_flight(app, &exit_code);
   add_list(app, &exit_code);
   add_material(app, &exit_code);
   add_reference(app, &exit_code);

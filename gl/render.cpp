@@ -40,7 +40,7 @@ void add_pass(const Scene& scene, const Camera& camera, vec2 inside, const GBuff
 RenderReport render(const Context& context, const ShaderText& text, const Scene& scene, Integrator& cpu,
                     const std::string& method, Film& film, const Budget& budget, const RenderOptions& options,
                     const std::function<void(const Film&, double)>& on_pass,
-                    const std::function<void(const Progress&)>& on_progress) {
+                    const std::function<void(const Progress&)>& on_progress, bool warm_up) {
   RenderReport report;
   Camera camera = scene.camera();
   camera.width = film.width(), camera.height = film.height();
@@ -61,6 +61,17 @@ RenderReport render(const Context& context, const ShaderText& text, const Scene&
   const float nothing[4] = {0, 0, 0, 0};
   glClearTexImage(direct_sum.id(), 0, GL_RGBA, GL_FLOAT, nothing);
   context.check("loading the scene");
+
+  if (warm_up) {
+    const Pass pass{.scene = scene, .camera = camera, .seed = options.seed};
+    cpu.begin_pass(pass, stop, report.pass);
+    twin->begin_pass(pass, buffers);
+    points.draw(buffers, camera, vec2(0.5f), scene.bounds().radius);
+    if (direct) direct->add(buffers, points, direct_sum);
+    twin->gather(points, sum);
+    glFinish();
+    report.pass = {};
+  }
 
   double spent = 0;
   for (int index = 0; budget.passes <= 0 || index < budget.passes; ++index) {

@@ -15,10 +15,10 @@ namespace zonal::gl {
 /// As zonal::render. report.pass.numbers holds gpu_points_seconds, gpu_gather_seconds and, with direct light,
 /// gpu_direct_seconds, of all passes:
 /// timer queries, or a finished queue's wall clock where those mean nothing; uploads and reading back are in
-/// neither.
+/// neither. `warm_up`: the first pass is drawn once before the clock starts, for drivers that compile late.
 RenderReport render(const Context& context, const ShaderText& text, const Scene& scene, Integrator& cpu,
                     const std::string& method, Film& film, const Budget& budget, const RenderOptions& options,
                     const std::function<void(const Film&, double seconds)>& on_pass = {},
-                    const std::function<void(const Progress&)>& on_progress = {});
+                    const std::function<void(const Progress&)>& on_progress = {}, bool warm_up = false);
 
 }  // namespace zonal::gl
