@@ -89,7 +89,7 @@ class ShLights {
   struct Triangles {
     Arrays spheres;  ///< of equal area at the centroids; axis: the lit side's normal
     std::vector<sh::TriangleSphere<float>> shapes;
-    std::vector<uint8_t> two_sided;
+    std::vector<float> back;  ///< what the cosine is multiplied with behind: -1, or 0 for lights of one side
   };
 
   /// What is summed, for a copy elsewhere (a GPU).

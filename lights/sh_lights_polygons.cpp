@@ -74,7 +74,7 @@ void ShLights::add_triangle(vec3 a, vec3 b, vec3 c, vec3 radiance, bool two_side
   t.spheres.radius.push_back(shape.radius);
   t.spheres.axis_x.push_back(shape.normal.x), t.spheres.axis_y.push_back(shape.normal.y);
   t.spheres.axis_z.push_back(shape.normal.z);
-  t.two_sided.push_back(two_sided), t.shapes.push_back(shape);
+  t.back.push_back(two_sided ? -1.0f : 0.0f), t.shapes.push_back(shape);
 }
 
 /// Relative L2 error of a triangle's sphere, the largest of three places `split_distance` away: over it, and
@@ -101,20 +101,27 @@ float ShLights::split_error_of(const sh::TriangleSphere<float>& shape) const {
 /// triangle.
 sh::LightArrays<float> ShLights::facing_spheres(vec3 x, float* weighted, float cell) const {
   const Arrays& s = triangles_.spheres;
-  const size_t count = s.x.size();
-  const auto row = [&](int i) { return weighted + size_t(i) * count; };
-  for (size_t k = 0; k < count; ++k) {
-    const vec3 w = x - vec3(s.x[k], s.y[k], s.z[k]), n(s.axis_x[k], s.axis_y[k], s.axis_z[k]);
-    const float d2 = glm::dot(w, w), inverse = d2 > 0 ? 1 / std::sqrt(d2) : 0.0f;
-    const float cosine = glm::dot(n, w) * inverse;
-    const float side = cosine > 0 ? 1.0f : triangles_.two_sided[k] ? -1.0f : 0.0f;
+  const int count = s.count();
+  const auto row = [&](int i) { return weighted + size_t(i) * size_t(count); };
+  // Their slope is as bounded as that of directions (sh/seen_lanes.h).
+  const float most = cell > 0 ? 1 / cell : kInfinity;
+  const float *px = s.x.data(), *py = s.y.data(), *pz = s.z.data(), *nx = s.axis_x.data(),
+              *ny = s.axis_y.data(), *nz = s.axis_z.data(), *back = triangles_.back.data();
+  const float *red = s.colour[0].data(), *green = s.colour[1].data(), *blue = s.colour[2].data();
+  float* __restrict__ r = row(0), * __restrict__ g = row(1), * __restrict__ b = row(2);
+  float* __restrict__ tx = row(3), * __restrict__ ty = row(4), * __restrict__ tz = row(5);
+#pragma omp simd
+  for (int k = 0; k < count; ++k) {
+    const float wx = x.x - px[k], wy = x.y - py[k], wz = x.z - pz[k];
+    const float d2 = wx * wx + wy * wy + wz * wz, inverse = d2 > 0 ? 1 / std::sqrt(d2) : 0.0f;
+    const float cosine = (nx[k] * wx + ny[k] * wy + nz[k] * wz) * inverse;
+    const float side = cosine > 0 ? 1.0f : back[k];
     // In its plane a triangle is black, but its slope is not: the smallest cosine whose inverse is a number.
     const float facing = std::max(side * cosine, side == 0 ? 0.0f : 1e-15f);
-    for (int c = 0; c < 3; ++c) row(c)[k] = s.colour[c][k] * facing;
-    // Its slope as bounded as that of directions (sh/seen_lanes.h).
-    const float rate = cell > 0 ? std::min(inverse, 1 / cell) : inverse;
-    const vec3 turn = side == 0 ? vec3(0) : (n - w * (cosine * inverse)) * (side * rate / facing);
-    for (int axis = 0; axis < 3; ++axis) row(3 + axis)[k] = turn[axis];
+    r[k] = red[k] * facing, g[k] = green[k] * facing, b[k] = blue[k] * facing;
+    const float turn = side == 0 ? 0.0f : side * std::min(inverse, most) / facing, along = cosine * inverse;
+    tx[k] = turn * (nx[k] - wx * along), ty[k] = turn * (ny[k] - wy * along),
+    tz[k] = turn * (nz[k] - wz * along);
   }
   sh::LightArrays<float> caps = s.caps(cell);
   for (int i = 0; i < 3; ++i) caps.radiance[i] = row(i), caps.slope[i] = row(3 + i);
@@ -138,7 +145,7 @@ void ShLights::triangles_one_by_one(int bands, vec3 x, float* L, float* gradient
   if (gradient) slope.resize(n);
   for (size_t k = 0; k < triangles_.shapes.size(); ++k) {
     const sh::TriangleSphere<float>& t = triangles_.shapes[k];
-    if (!triangles_.two_sided[k] && !(glm::dot(t.normal, x - t.center) > 0)) continue;
+    if (triangles_.back[k] == 0 && !(glm::dot(t.normal, x - t.center) > 0)) continue;
     sh::triangle_sphere_light<float>(bands, method_of(options_.polygons), t, x, one,
                                      gradient ? slope.data() : nullptr);
     for (int c = 0; c < 3; ++c) {
@@ -159,7 +166,7 @@ void ShLights::triangles_factorized(int bands, vec3 x, float* L, float* gradient
   sums.start(gradient != nullptr);
   const Triangles& t = triangles_;
   for (size_t k = 0; k < t.shapes.size(); ++k) {
-    if (!t.two_sided[k] && !(glm::dot(t.shapes[k].normal, x - t.shapes[k].center) > 0)) continue;
+    if (t.back[k] == 0 && !(glm::dot(t.shapes[k].normal, x - t.shapes[k].center) > 0)) continue;
     glm::dvec3 corners[3];
     for (int i = 0; i < 3; ++i) corners[i] = glm::dvec3(t.shapes[k].vertices[i]) - glm::dvec3(x);
     sums.add(3, corners, {t.spheres.colour[0][k], t.spheres.colour[1][k], t.spheres.colour[2][k]});

@@ -60,11 +60,14 @@ struct SeenLanes {
   /// at most 3 (t(d) - t(d + h))/h, d2t, the slope of dt, at most 3 dt/h. Sideways the light turns by 1/d a
   /// metre, but only over some d: at most 1/h.
   void bound(LightShape shape, T h, V r) {
-    const V zero = x * 0, d = T(1) / inverse_d, far = d + h, most = zero + T(1) / h;
+    const auto near = inverse_d * (shape == LightShape::sphere ? r + h : r * 0 + h) > 1;
+    bool any = false;
+    for (int k = 0; k < W; ++k) any |= near[k] != 0;
+    if (!any) return;
+    const V zero = x * 0, far = T(1) / inverse_d + h, most = zero + T(1) / h;
     const V ratio = r / (shape == LightShape::sphere ? far : sqrt_lanes(far * far + r * r));
     const V s2 = ratio < 1 ? ratio * ratio : zero + T(1);
     const V rate = T(3) * most * (versine - s2 / (sqrt_lanes(T(1) - s2) + T(1)));
-    const auto near = d - (shape == LightShape::sphere ? r : zero) < h;
     dt = near && dt < -rate ? -rate : dt;
     const V curve = T(-3) * most * dt;
     d2t = near && d2t > curve ? curve : d2t;
