@@ -54,7 +54,7 @@ std::vector<vec4> pack(const ShLights& lights) {
   const ShLights::Triangles& facing = lights.triangles();
   for (int i = 0; i < facing.spheres.count(); ++i)
     add_light(t, vec4(place(facing.spheres, i), facing.spheres.radius[i]), colour(facing.spheres, i), kFacing,
-              vec4(axis(facing.spheres, i), 0.0f), vec4(vec3(0), float(facing.two_sided[i])));
+              vec4(axis(facing.spheres, i), 0.0f), vec4(vec3(0), facing.back[i] == 0 ? 0.0f : 1.0f));
   const sh::TriangleBatch<float>& exact = lights.exact_triangles();
   for (int i = 0; i < exact.count(); ++i) {
     const vec3 a = exact.corner(i, 0);
