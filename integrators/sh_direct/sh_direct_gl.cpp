@@ -338,7 +338,9 @@ std::unique_ptr<Twin> make_sh_direct_twin(const ShaderText& text, Integrator& cp
   check("mixed", p.at != At::grid || p.scheme.parts() <= 4, "hessian", "\"differences\" or \"zero\"");
   check("polygons",
         p.polygons == ShLightOptions::Polygons::exact || p.polygons == ShLightOptions::Polygons::main,
-        "another sphere for triangles", "\"exact\" or \"main\"");
+        p.polygons == ShLightOptions::Polygons::factorized ? "factorized" : "another sphere for triangles",
+        "\"exact\" or \"main\"");
+  check("window", p.window != ShReceiverParams::Window::dering, "dering", "another window");
   return std::make_unique<ShDirectTwin>(text, direct, scene);
 }
 
