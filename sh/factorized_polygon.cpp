@@ -39,39 +39,57 @@ void FactorizedPolygons::add_edge(const dvec3& from, const dvec3& to) {
   const double alpha = 1 / length, beta = -glm::dot(from, edge) / (length * sine);
   const bool with_gradient = functions_ > 3;
   constexpr double kAcross = 1e-8;  ///< of a^2 + b^2: below it p and q are lost, and P_l is a line in z
-  for (int j = 0; j < lobes_; ++j) {
-    const dvec3 axis(x_[j], y_[j], z_[j]);
-    const double a = glm::dot(u, axis), b = glm::dot(v, axis), nz = glm::dot(n, axis), nz2 = nz * nz;
-    const double z0 = a, z1 = a * c + b * s, slope0 = b, slope1 = b * c - a * s, along = a * a + b * b;
-    double p0 = 1, p1 = 1, before0 = 1, before1 = 1;  // P_l and P_{l-1} at both ends; P_{-1} = 1
-    double B = T, B_before = 0, D = 0, D_before = 0;
-    const double p = (alpha * a + beta * b) / along, q = (alpha * b - beta * a) / along;
-    for (int l = 0; l < bands_; ++l) {
-      const double rising = slope1 * p1 - slope0 * p0;
-      const double next = (l * l * B_before - (2 * l + 1) * (nz2 * D + rising)) / double((l + 1) * (l + 1));
-      const double next0 = ((2 * l + 1) * z0 * p0 - l * before0) / (l + 1),
-                   next1 = ((2 * l + 1) * z1 * p1 - l * before1) / (l + 1);
-      const size_t at = size_t(l) * lobes_ + j;
-      if (l > 0) moments_[0][at] += nz * D / (l * (l + 1));
-      if (with_gradient) {
-        double inverse_rho;
-        if (along > kAcross) {
-          inverse_rho = (p * ((l + 1) * next + l * B_before) + q * ((next1 - before1) - (next0 - before0))) /
-                        (2 * l + 1);
-        } else {
-          // P_l(z) = P_l(0) + P_l'(0) z + O(1e-8).
-          const double even = alpha * s + beta * (1 - c);
-          const double odd =
-              a * alpha * (T + s * c) / 2 + b * beta * (T - s * c) / 2 + (a * beta + b * alpha) * s * s / 2;
-          inverse_rho = std::legendre(unsigned(l), 0.0) * even +
-                        (l > 0 ? l * std::legendre(unsigned(l - 1), 0.0) : 0.0) * odd;
-        }
-        moments_[1][at] += n.x * inverse_rho, moments_[2][at] += n.y * inverse_rho,
-            moments_[3][at] += n.z * inverse_rho;
+  double at_zero[kMaxBands];        // P_l(0)
+  for (int l = 0; l < bands_; ++l) at_zero[l] = l % 2 ? 0.0 : l == 0 ? 1.0 : -at_zero[l - 2] * (l - 1) / l;
+  // Lobes in the inner loops, in arrays of their own, so that the compiler sees that none is another.
+  using Row = double[3 * kMaxBands];
+  Row z0, z1, slope0, slope1, nz, p0, p1, before0, before1, B, B_before, D, D_before, p, q;
+  const int count = lobes_;
+  for (int j = 0; j < count; ++j) {
+    const double a = u.x * x_[j] + u.y * y_[j] + u.z * z_[j], b = v.x * x_[j] + v.y * y_[j] + v.z * z_[j];
+    const double along = std::max(a * a + b * b, kAcross);
+    z0[j] = a, z1[j] = a * c + b * s, slope0[j] = b, slope1[j] = b * c - a * s;
+    nz[j] = n.x * x_[j] + n.y * y_[j] + n.z * z_[j];
+    p[j] = (alpha * a + beta * b) / along, q[j] = (alpha * b - beta * a) / along;
+    p0[j] = p1[j] = before0[j] = before1[j] = 1;
+    B[j] = T, B_before[j] = D[j] = D_before[j] = 0;
+  }
+  for (int l = 0; l < bands_; ++l) {
+    const size_t first = size_t(l) * size_t(count);
+    double *__restrict__ value = moments_[0].data() + first, *__restrict__ gx = moments_[1].data() + first,
+           *__restrict__ gy = moments_[2].data() + first, *__restrict__ gz = moments_[3].data() + first;
+    const double odd = 2 * l + 1, inverse = 1.0 / (l + 1), share = l > 0 ? 1.0 / (l * (l + 1)) : 0.0;
+    struct Next {
+      double B, p0, p1;
+    };
+    const auto step = [&](int j) {
+      const double rising = slope1[j] * p1[j] - slope0[j] * p0[j];
+      return Next{(l * l * B_before[j] - odd * (nz[j] * nz[j] * D[j] + rising)) * (inverse * inverse),
+                  (odd * z0[j] * p0[j] - l * before0[j]) * inverse,
+                  (odd * z1[j] * p1[j] - l * before1[j]) * inverse};
+    };
+    if (with_gradient) {
+      // P_l(z) = P_l(0) + P_l'(0) z + O(1e-8) where z hardly moves.
+      const double here = at_zero[l] * (alpha * s + beta * (1 - c)),
+                   there = l > 0 ? l * at_zero[l - 1] / 2 : 0.0;
+      for (int j = 0; j < count; ++j) {
+        const double a = z0[j], b = slope0[j];
+        const double line = here + there * (a * alpha * (T + s * c) + b * beta * (T - s * c) +
+                                            (a * beta + b * alpha) * s * s);
+        const Next next = step(j);
+        const double whole = (p[j] * ((l + 1) * next.B + l * B_before[j]) +
+                              q[j] * ((next.p1 - before1[j]) - (next.p0 - before0[j]))) /
+                             odd;
+        const double inverse_rho = a * a + b * b < kAcross ? line : whole;
+        gx[j] += n.x * inverse_rho, gy[j] += n.y * inverse_rho, gz[j] += n.z * inverse_rho;
       }
-      const double D_next = D_before + (2 * l + 1) * B;
-      D_before = D, D = D_next, B_before = B, B = next;
-      before0 = p0, p0 = next0, before1 = p1, p1 = next1;
+    }
+    for (int j = 0; j < count; ++j) {
+      const Next next = step(j);
+      value[j] += nz[j] * D[j] * share;
+      const double D_next = D_before[j] + odd * B[j];
+      D_before[j] = D[j], D[j] = D_next, B_before[j] = B[j], B[j] = next.B;
+      before0[j] = p0[j], p0[j] = next.p0, before1[j] = p1[j], p1[j] = next.p1;
     }
   }
 }
