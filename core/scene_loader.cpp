@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/error.h"
 #include "core/loading.h"
@@ -60,8 +61,9 @@ void add_notes(Loading& loading) {
     loading.parts.notes.push_back(loading.file + ": there are no lights: the picture will be black");
 }
 
-Scene parse(const std::string& text, const std::string& file, const LoadOptions& options,
-            SceneSettings& settings) {
+/// Nothing where `only_check`: what is in other files is not read then.
+std::optional<Scene> parse(const std::string& text, const std::string& file, const LoadOptions& options,
+                           SceneSettings& settings, bool only_check = false) {
   json root = parse_json(text, file);
   apply_keyframes(root, options.frame, file);
   replace_materials(root, options.materials, file);
@@ -91,6 +93,7 @@ Scene parse(const std::string& text, const std::string& file, const LoadOptions&
   read_lights(loading, lights, fields.at("lights"));
   const bool own_camera = !camera.is_object() || !camera.contains("from");
   if (own_camera) loading.parts.camera = read_camera(loading, camera, fields.at("camera"), options);
+  if (only_check) return {};
   loading.textures.load_all(loading.parts.textures);
   loading.measured.load_all();
   import_meshes(loading);
@@ -125,9 +128,9 @@ Scene parse_scene(const std::string& text, const std::string& file, const LoadOp
                   SceneSettings* settings) {
   SceneSettings read;
   try {
-    Scene scene = parse(text, file, options, read);
+    std::optional<Scene> scene = parse(text, file, options, read);
     if (settings) *settings = std::move(read);
-    return scene;
+    return std::move(*scene);
   } catch (const SceneError& error) {
     throw SceneError(one_line(error.what()));
   }
@@ -135,6 +138,15 @@ Scene parse_scene(const std::string& text, const std::string& file, const LoadOp
 
 Scene load_scene(const std::string& file, const LoadOptions& options, SceneSettings* settings) {
   return parse_scene(read_text_file(file, "a scene"), file, options, settings);
+}
+
+void check_scene(const std::string& file, const LoadOptions& options) {
+  SceneSettings unused;
+  try {
+    parse(read_text_file(file, "a scene"), file, options, unused, true);
+  } catch (const SceneError& error) {
+    throw SceneError(one_line(error.what()));
+  }
 }
 
 }  // namespace zonal

@@ -29,5 +29,7 @@ Scene load_scene(const std::string& file, const LoadOptions& options = {}, Scene
 /// The same from text already in memory; `file` names it in errors and anchors relative paths.
 Scene parse_scene(const std::string& text, const std::string& file, const LoadOptions& options = {},
                   SceneSettings* settings = nullptr);
+/// Throws what load_scene would for what the file itself says; reads no mesh, texture or measured file.
+void check_scene(const std::string& file, const LoadOptions& options = {});
 
 }  // namespace zonal

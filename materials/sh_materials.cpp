@@ -1,5 +1,6 @@
 #include "materials/sh_materials.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -8,6 +9,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/error.h"
+#include "materials/material_database.h"
 #include "materials/measured_brdf.h"
 #include "materials/microfacet.h"
 #include "materials/sh_cache.h"
@@ -43,6 +46,10 @@ const LambertTable& lambert_table() {
   static const LambertTable table;
   return table;
 }
+
+/// Of the energy of F', in every row: what automatic tables hold by default, less the rounding of what is
+/// stored.
+constexpr float kEnoughShare = 0.9499f;
 
 struct Range {
   float low, high;
@@ -94,6 +101,15 @@ struct ShMaterials::Impl {
             .most_bands = options.most_bands,
             .azimuths = azimuths};
   }
+  /// Rows that hold their share need no further bands; a table that was cut before cannot give more.
+  void refuse_missing_bands(const Material& material, const ShMaterial& table) const {
+    const int stored = table.max_bands();
+    if (options.bands <= stored || describe_projection(table).least_share >= kEnoughShare) return;
+    throw SceneError(fmt::format(
+        "bands: found {}, expected 1 to {}, which the table of the material \"{}\" holds; \"auto\" "
+        "takes what is there, `zonal material project --bands {}` makes more",
+        options.bands, stored, material.name, options.bands));
+  }
   void add(const Material& material, const Stop& stop);
   void add_layers(const Material& material, const TexturedNumber* roughness, const Stop& stop, Entry* entry);
 };
@@ -141,6 +157,7 @@ void ShMaterials::Impl::add(const Material& material, const Stop& stop) {
   } else if (const auto* measured = dynamic_cast<const MeasuredMaterial*>(&material)) {
     if (!measured->sh_file.empty()) {
       entry.table = std::make_shared<const ShMaterial>(ShMaterial::open(measured->sh_file));
+      refuse_missing_bands(material, *entry.table);
     } else {
       const auto tell = [&](double share) {
         if (options.progress) options.progress(material.name, share);

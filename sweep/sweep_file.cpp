@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/json_fields.h"
 #include "core/metrics.h"
+#include "core/scene_loader.h"
 #include "core/strict_json.h"
 #include "integrators/table.h"
 
@@ -39,6 +40,23 @@ void parse_size(const std::string& text, const std::string& where, SweepScene* s
   scene->width = w, scene->height = h;
 }
 
+/// Every combination of the listed values; `lists` gets the keys of the lists.
+std::vector<json> combinations(const json& set, json* lists = nullptr) {
+  std::vector<json> all{json::object()};
+  for (const auto& [key, value] : set.items()) {
+    std::vector<json> next;
+    for (const json& one : all) {
+      for (const json& choice : list_of(value)) {
+        next.push_back(one);
+        next.back()[key] = choice;
+      }
+    }
+    if (lists && value.is_array()) (*lists)[key] = true;
+    all = std::move(next);
+  }
+  return all;
+}
+
 void read_scenes(SweepPlan& plan, Fields& fields, const std::string& size) {
   const json& list = fields.require("scenes", "a list of scene files");
   const auto values = read_array(list, fields.at("scenes"), "scenes");
@@ -51,7 +69,9 @@ void read_scenes(SweepPlan& plan, Fields& fields, const std::string& size) {
     for (const json& one : list_of(*replacements)) {
       if (!one.is_object())
         fields.fail("materials", "found " + describe(one) + ", expected {\"name\": replacement}");
-      materials.push_back(one);
+      const std::vector<json> all = combinations(one);
+      if (all.empty()) fields.fail("materials", "found an empty list, expected at least one replacement");
+      materials.insert(materials.end(), all.begin(), all.end());
     }
   }
   std::set<std::string> ids;
@@ -94,6 +114,12 @@ void read_scenes(SweepPlan& plan, Fields& fields, const std::string& size) {
       if (!ids.insert(with.id).second)
         throw SceneError(fmt::format("{}: found the scene {} again, expected an \"id\" of its own", where,
                                      in_quotes(with.id)));
+      try {
+        check_scene(with.file, {.frame = with.frame, .materials = replaced});
+      } catch (const SceneError& error) {
+        throw SceneError(
+            fmt::format("{}: {}", replaced.empty() ? where : fields.at("materials"), error.what()));
+      }
       plan.scenes.push_back(std::move(with));
     }
   }
@@ -124,25 +150,8 @@ CellBudget read_budget(const json& value, const std::string& where) {
   return budget;
 }
 
-/// Every combination of the listed values.
-std::vector<json> combinations(const json& set, json* lists) {
-  std::vector<json> all{json::object()};
-  for (const auto& [key, value] : set.items()) {
-    std::vector<json> next;
-    for (const json& one : all) {
-      for (const json& choice : list_of(value)) {
-        next.push_back(one);
-        next.back()[key] = choice;
-      }
-    }
-    if (value.is_array()) (*lists)[key] = true;
-    all = std::move(next);
-  }
-  return all;
-}
-
-/// What a method is scored against. Of one whose transport is direct light alone, `occlusion` is that of the camera's
-/// surface.
+/// What a method is scored against. Of one whose transport is direct light alone, `occlusion` is that of the
+/// camera's surface.
 json reference_of(const IntegratorRow& row, const json& parameters) {
   if (!row.transport.starts_with("direct,")) return matching_reference(parameters);
   json settings{{"max_bounces", 0}};

@@ -239,6 +239,12 @@ TEST_F(MaterialCommand, a_scenes_material_can_be_replaced_from_the_command_line)
       << said_;
   EXPECT_EQ(run({"render", file, "--material", "bal=" + entry, "--passes", "1", "-o", "none"}), 2);
   EXPECT_NE(said_.find("\"ball\""), std::string::npos) << said_;
+
+  // A table of two bands, which do not hold what the lobe needs.
+  EXPECT_EQ(run({"render", file, "--material", "ball=" + entry, "--integrator", "hvl", "--set", "bands=3",
+                 "--set", "emission_bands=2", "--passes", "1", "-o", "none"}),
+            2);
+  EXPECT_NE(said_.find("bands: found 3, expected 1 to 2"), std::string::npos) << said_;
 }
 
 TEST_F(MaterialCommand, bands_of_a_wide_lobe_are_few_and_grow_with_the_share) {

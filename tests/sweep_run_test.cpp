@@ -70,8 +70,11 @@ TEST(Sweep, another_sweeps_folder_and_a_folder_of_other_things_are_refused) {
 TEST(Sweep, a_cell_that_fails_is_a_row_with_its_reason) {
   const Folder folder;
   json sweep_json = small_sweep();
-  // The scene exists, and is none.
-  sweep_json["scenes"] = {kScene, folder.write("broken.json", "{\"camera\": {}}")};
+  // What the scene's file says is in order; the mesh it names is none.
+  const json broken = {{"camera", {{"position", {0, 0, 1}}, {"look_at", {0, 0, 0}}, {"resolution", {8, 8}}}},
+                       {"objects", {{{"type", "mesh"}, {"file", "broken.obj"}}}}};
+  folder.write("broken.obj", "v a b c\n");
+  sweep_json["scenes"] = {kScene, folder.write("broken.json", broken.dump())};
   sweep_json["methods"] = {"path"};
   const std::string out = folder.path + "/out";
   const int code = sweep(folder.write("s.json", sweep_json.dump()), out);
@@ -81,7 +84,7 @@ TEST(Sweep, a_cell_that_fails_is_a_row_with_its_reason) {
   for (const json& cell : results["cells"]) {
     if (cell["status"] != "failed") continue;
     ++failed;
-    EXPECT_NE(cell["reason"].get<std::string>().find("broken.json"), std::string::npos) << cell["reason"];
+    EXPECT_NE(cell["reason"].get<std::string>().find("broken"), std::string::npos) << cell["reason"];
   }
   EXPECT_EQ(failed, 2);
 }
