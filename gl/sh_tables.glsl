@@ -15,21 +15,24 @@ int sh_table_kind(Point p) {
   return int(texelFetch(sh_records, 2 * p.material).x);
 }
 
+// Where sums go: arrays handed to functions are copied number by number, which takes compilers a minute.
+ShColors sh_table;
+
 // Adds `share` of one file's coefficients, its channels mixed: colour = a x + b y + c z.
-void add_table(Point p, int record, uint kind, int bands, float share, vec3 a, vec3 b, vec3 c, inout ShColors sum) {
+void add_table(Point p, int record, uint kind, int bands, float share, vec3 a, vec3 b, vec3 c) {
   vec4 level = texelFetch(sh_records, record);
   ShmatTable t = shmat_open((uint(level.y) << 12) + uint(level.z));
   ShmatPlace place = shmat_find(t, kind, p.brdf.o);
   for (int l = 0; l < bands; ++l) {
     for (int m = t.mirrored == 1u ? 0 : -l; m <= l; ++m) {
       vec3 stored = shmat_coefficient(t, place, shmat_index(t, l, m));
-      sum.c[l * (l + 1) + m] += share * (a * stored.x + b * stored.y + c * stored.z);
+      sh_table.c[l * (l + 1) + m] += share * (a * stored.x + b * stored.y + c * stored.z);
     }
   }
 }
 
 // Adds the point's coefficients in its view frame; `kind` 0: of its BRDF, 1: of that times cosine. Nothing for Lambert and black.
-void add_tables(Point p, uint kind, int bands, inout ShColors sum) {
+void add_tables(Point p, uint kind, int bands) {
   vec4 record = texelFetch(sh_records, 2 * p.material);
   int levels = int(record.y);
   if (levels == 0) return;
@@ -48,6 +51,6 @@ void add_tables(Point p, uint kind, int bands, inout ShColors sum) {
   }
   for (int i = 0; i < 2; ++i) {
     float share = i == 0 ? 1.0 - blend : blend;
-    if (share > 0.0) add_table(p, int(record.z) + level + i, kind, bands, share, a, b, c, sum);
+    if (share > 0.0) add_table(p, int(record.z) + level + i, kind, bands, share, a, b, c);
   }
 }

@@ -19,13 +19,12 @@ void main() {
   if (any(greaterThanEqual(at, size))) return;
   Point p = point_read(at);
   if (!point_gathers(p)) return;
-  ShColors table;
-  for (int i = 0; i < bands * bands; ++i) table.c[i] = vec3(0.0);
+  for (int i = 0; i < bands * bands; ++i) sh_table.c[i] = vec3(0.0);
   if (sh_table_kind(p) == SH_LAMBERT) {
-    for (int l = 0; l < bands; ++l) table.c[l * (l + 1)] = p.albedo * lambert_zonal[l];
+    for (int l = 0; l < bands; ++l) sh_table.c[l * (l + 1)] = p.albedo * lambert_zonal[l];
   } else {
-    add_tables(p, 1u, bands, table);
+    add_tables(p, 1u, bands);
   }
   for (int l = 0; l < bands; ++l)
-    for (int i = l * l; i < (l + 1) * (l + 1); ++i) imageStore(receivers, ivec3(at, i), vec4(table.c[i] * window[l], 0.0));
+    for (int i = l * l; i < (l + 1) * (l + 1); ++i) imageStore(receivers, ivec3(at, i), vec4(sh_table.c[i] * window[l], 0.0));
 }

@@ -73,13 +73,12 @@ void main() {
     return;
   }
   // No axis of symmetry: the table of the BRDF without cosine, colour after colour.
-  ShColors table;
-  for (int i = 0; i < bands * bands; ++i) table.c[i] = vec3(0.0);
-  add_tables(p, 0u, bands, table);
+  for (int i = 0; i < bands * bands; ++i) sh_table.c[i] = vec3(0.0);
+  add_tables(p, 0u, bands);
   ShColors result;
   for (int k = 0; k < 3; ++k) {
     for (int l = 0; l < bands; ++l)
-      for (int i = l * l; i < (l + 1) * (l + 1); ++i) f.c[i] = table.c[i][k] * window[l];
+      for (int i = l * l; i < (l + 1) * (l + 1); ++i) f.c[i] = sh_table.c[i][k] * window[l];
     ShCoefficients weighted = times_cosine(f);
     for (int i = 0; i < light_bands * light_bands; ++i) result.c[i][k] = weighted.c[i];
   }
