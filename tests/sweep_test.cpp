@@ -204,9 +204,15 @@ TEST(SweepFile, the_published_sweeps_can_be_read) {
     const std::string file = entry.path().string(),
                       text = entry.path().extension() == ".json" ? text_of(file) : "";
     if (text.empty() || entry.path().filename() == "sweep.schema.json") continue;
-    if (text.find("${ZONAL_DATA}") != std::string::npos && !std::getenv("ZONAL_DATA")) continue;
-    if (text.find("\"materials\"") != std::string::npos && !std::getenv("ZONAL_MATERIALS")) continue;
-    EXPECT_GT(read_sweep(file).cells.size(), 0u) << file;
+    try {
+      EXPECT_GT(read_sweep(file).cells.size(), 0u) << file;
+    } catch (const SceneError& error) {
+      // Scenes and materials that are downloaded may be absent, and no other reason is one.
+      const std::string said = error.what();
+      if (!std::getenv("ZONAL_DATA") && said.find("ZONAL_DATA") != said.npos) continue;
+      if (!std::getenv("ZONAL_MATERIALS") && said.find("ZONAL_MATERIALS") != said.npos) continue;
+      ADD_FAILURE() << said;
+    }
     ++read;
   }
   EXPECT_GE(read, 2);
